@@ -1,16 +1,16 @@
 //! The WebAssembly module of the npm package `acrobot-rs`: functions that its JavaScript calls.
 //!
 //! JavaScript keeps the address of each acrobot and of each batch in a private field, until it
-//! frees it. Longer data passes through the memory in `memory`. There a seed has `words` words of
-//! 32 bits; without any the generator continues. JavaScript checks numbers, lengths and actions,
-//! and the crate checks parameters, states and snapshots. A setter returns 0, or the length of the
-//! reason for a rejection.
+//! frees it. Other data passes through the words in `memory`, snapshots through memory of their
+//! own. There a seed has `words` words of 32 bits; without any the generator continues. JavaScript
+//! checks types, lengths, indices and actions, and the crate checks everything else. A setter
+//! returns 0, or the kind of error, whose details are in the words.
 
 mod many;
 mod memory;
 mod single;
+mod snapshot;
 
-use acrobot::task::{Gymnasium, Swingup, Task};
 use lol_alloc::{AssumeSingleThreaded, FreeListAllocator};
 
 #[cfg(target_feature = "atomics")]
@@ -28,14 +28,14 @@ pub enum Tasks<A, B> {
     Swingup(B),
 }
 
-/// A task's bound of initial states on both sides.
-#[unsafe(no_mangle)]
-pub extern "C" fn task_bound(task: u32) -> f64 {
-    let bounds = match task {
-        0 => Gymnasium::RESET_BOUNDS,
-        _ => Swingup::RESET_BOUNDS,
-    };
-    bounds.high()
+impl<A, B> Tasks<A, B> {
+    /// JavaScript's number of the task.
+    pub fn number(&self) -> u32 {
+        match self {
+            Self::Acrobot(_) => 0,
+            Self::Swingup(_) => 1,
+        }
+    }
 }
 
 /// Does something with what an enum [`Tasks`] has, whatever the task.

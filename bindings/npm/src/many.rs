@@ -1,28 +1,37 @@
 //! Many acrobots at once: the class `Batch` of the package.
 
-use std::alloc::{Layout, alloc_zeroed};
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Damped};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
-use acrobot::numpy::{Pcg64, uniform};
-use acrobot::task::{Gymnasium, Swingup, Task};
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::physics::State;
+use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup};
 use acrobot::{Error, Fast, Params, ResetOptions};
+use serde::Serialize;
 
-use crate::memory::{self, set_bytes, set_numbers};
+use crate::memory::{self, set_numbers, zeros};
+use crate::snapshot::{self, Header, Reader, read};
 use crate::{Tasks, with_task};
 
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
 
 /// Vectors for parameters of each acrobot, too, or for none. Compiling both takes 13 KB.
-type Memory<A> = (Vec<Block<A, LANES>>, Vec<Pcg64>, Vec<LaneParams<A, LANES>>);
+type Memory<A> = (
+    Vec<Block<A, LANES>>,
+    Vec<Pcg64>,
+    Vec<LaneParams<A, LANES>>,
+    Draws<<A as Arithmetic>::Scalar>,
+);
 
 type Acrobots<A, T> = Batch<A, Memory<A>, T, LANES>;
 
+type AnyTask = Tasks<Acrobots<Fast, Gymnasium>, Acrobots<Damped<Fast>, Swingup>>;
+
 /// A batch with its memory, and what JavaScript reads and writes.
 pub struct Many {
-    batch: Tasks<Acrobots<Fast, Gymnasium>, Acrobots<Damped<Fast>, Swingup>>,
+    batch: AnyTask,
     own_params: bool,
     /// Draws random actions.
     action_space: Pcg64,
@@ -42,80 +51,84 @@ pub struct Many {
     ended: Vec<bool>,
 }
 
-/// `count` zeros, or `None` if there is no memory for them.
-///
-/// # Safety
-///
-/// A `T` may consist of zero bytes.
-unsafe fn zeros<T>(count: usize) -> Option<Vec<T>> {
-    if count == 0 {
-        return Some(Vec::new());
-    }
-    let layout = Layout::array::<T>(count).ok()?;
-    // SAFETY: the size of what is kept here is not 0, and a vector frees memory of this layout.
-    unsafe {
-        let memory: *mut T = alloc_zeroed(layout).cast();
-        (!memory.is_null()).then(|| Vec::from_raw_parts(memory, count, count))
-    }
-}
-
-fn make<A: Arithmetic, T: Task>(
-    words: usize,
-    count: usize,
-    own_params: bool,
-) -> Option<Acrobots<A, T>> {
+fn memory<A: Arithmetic>(count: usize, own_params: bool) -> Option<Memory<A>> {
     let len = count.div_ceil(LANES);
+    let own = if own_params { len } else { 0 };
     // SAFETY: all are numbers and flags, which `Batch::new` writes.
-    let memory = unsafe { (zeros(len)?, zeros(count)?, zeros(if own_params { len } else { 0 })?) };
-    Batch::new(memory::seed(words), memory).ok()
+    unsafe { Some((zeros(len)?, zeros(count)?, zeros(own)?, Draws::NONE)) }
 }
 
 impl Many {
-    fn new(words: usize, count: usize, own_params: bool, task: u32) -> Option<Self> {
-        Some(Self {
-            batch: match task {
-                0 => Tasks::Acrobot(make(words, count, own_params)?),
-                _ => Tasks::Swingup(make(words, count, own_params)?),
-            },
-            own_params,
-            action_space: Pcg64::UNSEEDED,
-            // SAFETY: all are numbers and flags.
-            actions: unsafe { zeros(count)? },
-            torques: unsafe { zeros(count)? },
-            torques_of: unsafe { zeros(if own_params { count } else { 1 })? },
-            mask: unsafe { zeros(count)? },
-            observations: unsafe { zeros(count)? },
-            rewards: unsafe { zeros(count)? },
-            terminated: unsafe { zeros(count)? },
-            truncated: unsafe { zeros(count)? },
-            final_observations: unsafe { zeros(count)? },
-            ended: unsafe { zeros(count)? },
-        })
+    fn new(count: usize, own_params: bool, task: u32) -> Option<Self> {
+        let seed = SeedSequence::new(0);
+        let batch = match task {
+            0 => Tasks::Acrobot(Batch::new(seed, memory(count, own_params)?).ok()?),
+            _ => Tasks::Swingup(Batch::new(seed, memory(count, own_params)?).ok()?),
+        };
+        // SAFETY: all are numbers and flags.
+        unsafe {
+            Some(Self {
+                batch,
+                own_params,
+                action_space: Pcg64::UNSEEDED,
+                actions: zeros(count)?,
+                torques: zeros(count)?,
+                torques_of: zeros(if own_params { count } else { 1 })?,
+                mask: zeros(count)?,
+                observations: zeros(count)?,
+                rewards: zeros(count)?,
+                terminated: zeros(count)?,
+                truncated: zeros(count)?,
+                final_observations: zeros(count)?,
+                ended: zeros(count)?,
+            })
+        }
     }
 }
 
-/// Writes the addresses of what JavaScript reads and writes, then the limit of steps, for which a 0
-/// stands for the task's. Returns 0 without memory.
+/// Makes a batch that JavaScript resets. A limit of 0 steps stands for the task's. Returns 0
+/// without memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_new(
     count: usize,
-    words: usize,
     max_steps: u32,
     autoreset: u32,
     own_params: bool,
     task: u32,
 ) -> Option<Box<Many>> {
-    let mut many = memory::keep(Many::new(words, count, own_params, task)?)?;
-    let autoreset = match autoreset {
-        0 => Autoreset::NextStep,
-        1 => Autoreset::SameStep,
-        _ => Autoreset::Disabled,
-    };
-    let limit = with_task!(&mut many.batch, batch => {
-        batch.set_limit(NonZeroU32::new(max_steps).unwrap_or(batch.limit()));
-        batch.set_autoreset(autoreset);
-        batch.limit()
+    let mut many = memory::keep(Many::new(count, own_params, task)?)?;
+    with_task!(&mut many.batch, batch => {
+        batch.set_max_steps(NonZeroU32::new(max_steps).unwrap_or(batch.max_steps()));
+        batch.set_autoreset(match autoreset {
+            0 => Autoreset::NextStep,
+            1 => Autoreset::SameStep,
+            _ => Autoreset::Disabled,
+        });
     });
+    Some(many)
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_free(many: Box<Many>) {
+    drop(many);
+}
+
+/// Writes the settings, and the addresses of what JavaScript reads and writes.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_open(many: &Many) {
+    let (max_steps, autoreset) =
+        with_task!(&many.batch, batch => (batch.max_steps(), batch.autoreset()));
+    let settings = [
+        many.actions.len() as u32,
+        max_steps.get(),
+        match autoreset {
+            Autoreset::SameStep => 1,
+            Autoreset::Disabled => 2,
+            _ => 0,
+        },
+        many.own_params.into(),
+        many.batch.number(),
+    ];
     let addresses = [
         many.observations.as_ptr().addr(),
         many.rewards.as_ptr().addr(),
@@ -126,21 +139,17 @@ pub extern "C" fn batch_new(
         many.actions.as_ptr().addr(),
         many.mask.as_ptr().addr(),
         many.torques.as_ptr().addr(),
-        limit.get() as usize,
     ];
-    set_bytes(addresses.into_iter().flat_map(usize::to_le_bytes));
-    Some(many)
+    memory::set(settings.into_iter().chain(addresses.map(|address| address as u32)));
 }
 
+/// Resets all acrobots, or those in the mask.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_free(many: Box<Many>) {
-    drop(many);
-}
-
-/// Resets the acrobots in the mask.
-#[unsafe(no_mangle)]
-pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
+pub extern "C" fn batch_reset(many: &mut Many, words: usize, masked: bool) {
     let seed = (words > 0).then(|| memory::seed(words));
+    if !masked {
+        many.mask.fill(true);
+    }
     let options = ResetOptions { seed, bounds: None };
     // Here and below the lengths are equal, so that this cannot fail.
     let _ = with_task!(&mut many.batch, batch => batch.reset_masked(&many.mask, options));
@@ -166,11 +175,26 @@ pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
 }
 
 impl Many {
-    /// Makes torques of the actions: steps of actions, too, would take 9 KB. Returns false if an
+    /// Notes the torques of the actions: of all acrobots, or of those that a reset has changed.
+    fn note_torques(&mut self, all: bool) {
+        for (index, torques) in self.torques_of.iter_mut().enumerate() {
+            let (elapsed, params) = with_task!(&self.batch, batch => {
+                (batch.elapsed_steps_of(index), batch.params_of(index))
+            });
+            if all || elapsed == Some(0) {
+                *torques = params.map_or(*torques, |params| params.torques);
+            }
+        }
+    }
+
+    /// Makes torques of the actions: steps of actions, too, would take 21 KB. Returns false if an
     /// action is above 2.
     fn act(&mut self) -> bool {
         if self.actions.iter().any(|action| *action > 2) {
             return false;
+        }
+        if self.own_params {
+            self.note_torques(false);
         }
         let torques = self.torques.iter_mut().zip(&self.actions);
         match *self.torques_of {
@@ -189,16 +213,34 @@ impl Many {
         true
     }
 
-    fn set_params(&mut self, index: usize, params: Params<f32>) -> Result<(), Error> {
-        let own_params = self.own_params;
-        with_task!(&mut self.batch, batch => match own_params {
-            true => batch.set_params_of(index, params),
-            false => batch.set_params(params),
-        })?;
-        if let Some(of) = self.torques_of.get_mut(index) {
-            *of = params.torques;
+    /// Changes parameters of acrobot `index`, or of all without one.
+    fn set_params(&mut self, index: Option<usize>, mask: u32) -> Result<(), Error> {
+        let indices = index.map_or(0..self.actions.len(), |index| index..index + 1);
+        // All are tried before one changes.
+        for is_trial in [true, false] {
+            for each in indices.clone() {
+                let params = with_task!(&self.batch, batch => batch.params_of(each));
+                let Some(before) = params else {
+                    break;
+                };
+                let params = memory::changed(before, mask);
+                with_task!(&mut self.batch, batch => {
+                    if index.is_none() && !self.own_params {
+                        return batch.set_params(params);
+                    }
+                    batch.set_params_of(each, params)?;
+                    if is_trial {
+                        batch.set_params_of(each, before)?;
+                    }
+                });
+            }
         }
         Ok(())
+    }
+
+    fn set_draws(&mut self) -> Result<(), Error> {
+        let draws = memory::get_draws()?;
+        with_task!(&mut self.batch, batch => batch.set_draws(draws))
     }
 }
 
@@ -213,7 +255,7 @@ pub extern "C" fn batch_step(many: &mut Many, given_torques: bool) -> bool {
         .with_observations(&mut many.observations)
         .with_final_observations(&mut many.final_observations);
     let (stepped, autoreset) = with_task!(&mut many.batch, batch => {
-        (batch.step(&many.torques, buffers).is_ok(), batch.autoreset())
+        (batch.step_into(&many.torques, buffers).is_ok(), batch.autoreset())
     });
     if stepped {
         let lasting = autoreset == Autoreset::Disabled;
@@ -227,63 +269,115 @@ pub extern "C" fn batch_step(many: &mut Many, given_torques: bool) -> bool {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_state(many: &Many, index: usize) {
-    if let Some(state) = with_task!(&many.batch, batch => batch.state(index)) {
+    if let Some(state) = with_task!(&many.batch, batch => batch.state_of(index)) {
         set_numbers(state.into());
     }
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_state(many: &mut Many, index: usize) -> usize {
+pub extern "C" fn batch_set_state(many: &mut Many, index: usize) -> u32 {
     let state = memory::get_state();
-    memory::reason(with_task!(&mut many.batch, batch => batch.set_state(index, state)))
+    memory::reason(with_task!(&mut many.batch, batch => batch.set_state_of(index, state)))
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_elapsed(many: &Many, index: usize) -> u32 {
-    with_task!(&many.batch, batch => batch.elapsed(index)).unwrap_or_default()
+pub extern "C" fn batch_elapsed_steps(many: &Many, index: usize) -> u32 {
+    with_task!(&many.batch, batch => batch.elapsed_steps_of(index)).unwrap_or_default()
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_params(many: &Many, index: usize) {
     if let Some(params) = with_task!(&many.batch, batch => batch.params_of(index)) {
-        memory::save(&params);
+        memory::set_params(&params);
     }
 }
 
-/// Sets the parameters of acrobot `index`, or, with 0, those that all acrobots share.
+/// Changes the parameters in the mask, of acrobot `index` or of all.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params(many: &mut Many, index: usize) -> usize {
-    memory::reason(many.set_params(index, memory::get_params()))
+pub extern "C" fn batch_set_params(many: &mut Many, mask: u32, of_one: bool, index: usize) -> u32 {
+    let changed = many.set_params(of_one.then_some(index), mask);
+    many.note_torques(true);
+    memory::reason(changed)
 }
 
-/// Draws a number between the bounds from the generator of acrobot `index`.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_uniform(many: &mut Many, index: usize, low: f64, high: f64) -> f64 {
-    let rng = with_task!(&mut many.batch, batch => batch.generators_mut().get_mut(index));
-    rng.map_or(low, |rng| uniform(rng, low, high))
+pub extern "C" fn batch_set_draws(many: &mut Many) -> u32 {
+    memory::reason(many.set_draws())
 }
 
-/// Writes acrobot `index` in the format of postcard, and returns its length.
+/// The fields of a batch's snapshot before its acrobots: their number and one, the header, the
+/// bounds of initial states, the limit of steps, when resets are, and whether parameters are own.
+type Settings<'a> = (u32, Header<'a>, f64, f64, NonZeroU32, Autoreset, bool, Params<Draw<f32>>);
+
+/// The fields of an acrobot.
+type Fields = (Params<f32>, State<f32>, u32, bool, Pcg64);
+
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_save(many: &Many, index: usize) -> usize {
-    with_task!(&many.batch, batch => {
-        batch.member(index).map_or(0, |Member { params, state, elapsed, reset_pending, rng }| {
-            memory::save(&(params, state, elapsed, reset_pending, rng))
-        })
+pub extern "C" fn batch_save(many: &Many) -> usize {
+    let (count, own) = (many.actions.len(), many.own_params);
+    let header = snapshot::header("batch", many.batch.number());
+    let settings: Settings = with_task!(&many.batch, batch => {
+        let (bounds, draws) = (batch.reset_bounds(), *batch.draws().params());
+        let (low, high, limit) = (bounds.low(), bounds.high(), batch.max_steps());
+        (count as u32 + 1, header, low, high, limit, batch.autoreset(), own, draws)
+    });
+    // The settings have less than 512 bytes, each acrobot at most 151.
+    snapshot::save(512 + count * 151, |writer| {
+        settings.serialize(&mut *writer)?;
+        for index in 0..count {
+            let fields: Option<Fields> = with_task!(&many.batch, batch => {
+                batch.member(index).map(|Member { params, state, elapsed_steps, ended, rng }| {
+                    (params, state, elapsed_steps, ended, rng)
+                })
+            });
+            if let Some(fields) = fields {
+                fields.serialize(&mut *writer)?;
+            }
+        }
+        Ok(())
     })
 }
 
-/// Loads acrobot `index` from the first of `len` bytes. Returns their number, or 0 if invalid.
-#[unsafe(no_mangle)]
-pub extern "C" fn batch_load(many: &mut Many, index: usize, len: usize) -> usize {
-    let Some(((params, state, elapsed, reset_pending, rng), used)) = memory::load(len) else {
-        return 0;
-    };
-    // The first brings the parameters, if all acrobots share them.
-    let set = index > 0 && !many.own_params || many.set_params(index, params).is_ok();
-    let loaded = with_task!(&mut many.batch, batch => {
-        let member = Member { params, state, elapsed, reset_pending, rng };
-        batch.set_member(index, member).is_ok()
+fn load(content: &[u8]) -> Option<Many> {
+    let mut reader = Reader::from_bytes(content);
+    let (records, header, low, high, max_steps, autoreset, own_params, draws) =
+        read::<Settings>(&mut reader)?;
+    let task = snapshot::task_of("batch", header)?;
+    let count = records.checked_sub(1)? as usize;
+    // Parameters and state have 89 bytes. Other numbers could take all memory.
+    if count > content.len() / 89 {
+        return None;
+    }
+    let mut many = Many::new(count, own_params, task)?;
+    for index in 0..count {
+        let (params, state, elapsed_steps, ended, rng) = read::<Fields>(&mut reader)?;
+        with_task!(&mut many.batch, batch => {
+            // The first brings the parameters, if all acrobots share them.
+            if index == 0 {
+                batch.set_params(params).ok()?;
+            }
+            let member = Member { params, state, elapsed_steps, ended, rng };
+            batch.set_member(index, member).ok()?;
+        });
+        *many.ended.get_mut(index)? = ended;
+    }
+    with_task!(&mut many.batch, batch => {
+        batch.set_draws(Draws::new(draws).ok()?).ok()?;
+        batch.set_reset_bounds(ResetBounds::new(low, high).ok()?);
+        batch.set_max_steps(max_steps);
+        batch.set_autoreset(autoreset);
     });
-    if set && loaded { used } else { 0 }
+    many.note_torques(true);
+    reader.finalize().ok()?.is_empty().then_some(many)
+}
+
+/// Loads a snapshot. Returns false and changes nothing if it is invalid, or without memory.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_load(many: &mut Many, address: *const u8, len: usize) -> bool {
+    let loaded = snapshot::open(address, len).and_then(load);
+    let is_valid = loaded.is_some();
+    if let Some(loaded) = loaded {
+        *many = loaded;
+    }
+    is_valid
 }

@@ -1,9 +1,11 @@
-//! What the exported functions share: memory for acrobots, and to exchange values.
+//! What the exported functions share: memory for acrobots, and words to exchange values.
 
-use std::alloc::{Layout, alloc};
+use std::alloc::{Layout, alloc, alloc_zeroed};
 use std::cell::Cell;
 
 use acrobot::numpy::SeedSequence;
+use acrobot::physics::Dynamics;
+use acrobot::task::{Draw, Draws};
 use acrobot::{Error, Params, State};
 
 /// Moves a value to the heap, or returns `None` if there is no memory. `Box::new` would panic.
@@ -19,25 +21,41 @@ pub fn keep<T>(value: T) -> Option<Box<T>> {
     }
 }
 
-/// The longest seed, in words of 32 bits. Snapshots, error texts and six numbers are shorter.
-const LEN: usize = 64;
+/// `count` zeros, or `None` if there is no memory for them.
+///
+/// # Safety
+///
+/// A `T` may consist of zero bytes.
+pub unsafe fn zeros<T>(count: usize) -> Option<Vec<T>> {
+    if count == 0 {
+        return Some(Vec::new());
+    }
+    let layout = Layout::array::<T>(count).ok()?;
+    // SAFETY: the size of what is kept here is not 0, and a vector frees memory of this layout.
+    unsafe {
+        let memory: *mut T = alloc_zeroed(layout).cast();
+        (!memory.is_null()).then(|| Vec::from_raw_parts(memory, count, count))
+    }
+}
+
+/// 18 draws have 5 words each. Seeds, with up to 64, and others are shorter.
+const LEN: usize = 90;
 
 thread_local! {
     static WORDS: Cell<[u32; LEN]> = const { Cell::new([0; LEN]) };
 }
 
-/// The address of numbers or bytes that JavaScript reads and writes between calls.
+/// The address of the words that JavaScript reads and writes between calls.
 #[unsafe(no_mangle)]
-pub extern "C" fn bytes() -> *const u8 {
+pub extern "C" fn words() -> *const u32 {
     WORDS.with(Cell::as_ptr).cast()
 }
 
-pub fn get_state() -> State<f32> {
-    let [theta1, theta2, dtheta1, dtheta2, ..] = WORDS.get().map(f32::from_bits);
-    State::from([theta1, theta2, dtheta1, dtheta2])
+fn numbers() -> [f32; LEN] {
+    WORDS.get().map(f32::from_bits)
 }
 
-fn set(values: impl IntoIterator<Item = u32>) {
+pub fn set(values: impl IntoIterator<Item = u32>) {
     WORDS.with(|words| {
         let words: &Cell<[u32]> = words;
         for (word, value) in words.as_slice_of_cells().iter().zip(values) {
@@ -50,52 +68,73 @@ pub fn set_numbers<const N: usize>(values: [f32; N]) {
     set(values.map(f32::to_bits));
 }
 
-/// Writes bytes and returns their count.
-pub fn set_bytes(values: impl IntoIterator<Item = u8>) -> usize {
-    let mut bytes = [0; 4 * LEN];
-    let pairs = bytes.iter_mut().zip(values);
-    let len = pairs.map(|(byte, value)| *byte = value).count();
-    set(bytes.as_chunks().0.iter().copied().map(u32::from_le_bytes));
-    len
+/// A text as its address and its length.
+pub fn text(text: &str) -> [u32; 2] {
+    [text.as_ptr().addr() as u32, text.len() as u32]
 }
 
-/// Writes parameters or a snapshot in the format of postcard, and returns the length.
-pub fn save(value: &impl serde::Serialize) -> usize {
-    let mut bytes = [0; 4 * LEN];
-    let saved = postcard::to_slice(value, &mut bytes);
-    saved.map_or(0, |saved| set_bytes(saved.iter().copied()))
-}
-
-/// The seed in the first `words` 32-bit words. The lowest word is first.
+/// The seed in the first `words` words. The lowest word is first.
 pub fn seed(words: usize) -> SeedSequence {
     SeedSequence::from_words(WORDS.get().get(..words).unwrap_or_default())
 }
 
-/// Loads what [`save`] writes from the first of `len` bytes. Returns it with the number of its
-/// bytes, or `None` if they are invalid.
-pub fn load<T: serde::de::DeserializeOwned>(len: usize) -> Option<(T, usize)> {
-    let bytes = WORDS.get().map(u32::to_le_bytes);
-    let (value, rest) = postcard::take_from_bytes(bytes.as_flattened().get(..len)?).ok()?;
-    Some((value, len - rest.len()))
+pub fn get_state() -> State<f32> {
+    let [theta1, theta2, dtheta1, dtheta2, ..] = numbers();
+    State::from([theta1, theta2, dtheta1, dtheta2])
 }
 
-/// The parameters that JavaScript has written as [`save`] writes them.
-pub fn get_params() -> Params<f32> {
-    load(4 * LEN).map_or(Params::DEFAULT, |(params, _)| params)
+/// Writes the numbers in the order of the fields, then that of the dynamics.
+pub fn set_params(params: &Params<f32>) {
+    let dynamics = f32::from(u8::from(params.dynamics == Dynamics::Nips));
+    let numbers = params.numbers().into_iter().map(|(_, number)| number);
+    set(numbers.chain([dynamics]).map(f32::to_bits));
 }
 
-/// 0, or the length of the reason for which numbers are rejected: name, rule and unit, a line each.
-/// JavaScript has the value, and composes the message, because Rust's formatting of floats would
-/// add 16 KB to the module.
-pub fn reason(result: Result<(), Error>) -> usize {
-    let (name, rule, unit) = match result {
-        Ok(()) => return 0,
-        Err(Error::OutOfRange { name, rule, unit, .. }) => (name, rule, unit),
-        Err(Error::NoInertia { name, .. }) => {
-            (name, "above 0", "kg m² if the centre of mass is on the joint")
+/// The parameters with some replaced by what JavaScript has written as [`set_params`] does: those
+/// whose bit is in `mask`.
+pub fn changed(mut params: Params<f32>, mask: u32) -> Params<f32> {
+    let numbers = numbers();
+    let is_given = |slot: usize| mask >> slot & 1 != 0;
+    for (slot, (number, given)) in params.numbers_mut().into_iter().zip(numbers).enumerate() {
+        if is_given(slot) {
+            *number = given;
         }
-        // Parameters and states have no other errors.
-        Err(_) => ("", "", ""),
+    }
+    if is_given(18) {
+        params.dynamics = if numbers[18] == 0.0 { Dynamics::Book } else { Dynamics::Nips };
+    }
+    params
+}
+
+/// The draws that JavaScript has written: for each number its kind, and up to four numbers.
+pub fn get_draws() -> Result<Draws<f32>, Error> {
+    let numbers = numbers();
+    let mut draws = Draws::FIXED;
+    for (draw, row) in draws.numbers_mut().into_iter().zip(numbers.as_chunks().0) {
+        let [kind, a, b, low, high] = *row;
+        *draw = match kind as u32 {
+            0 => Draw::Fixed,
+            1 => Draw::AsBefore,
+            2 => Draw::Uniform { low: a, high: b },
+            3 => Draw::LogUniform { low: a, high: b },
+            _ => Draw::Normal { mean: a, std: b, low, high },
+        };
+    }
+    Draws::new(draws)
+}
+
+/// 0, or the kind of error for which numbers are rejected. Then the value, the name, the rule and
+/// the unit are in the words. JavaScript composes the message, because Rust's formatting of floats
+/// would add 16 KB to the module.
+pub fn reason(result: Result<(), Error>) -> u32 {
+    let (kind, value, texts) = match result {
+        Ok(()) => return 0,
+        Err(Error::OutOfRange { name, value, unit, rule }) => (1, value, [name, rule, unit]),
+        Err(Error::NoFriction { name, value }) => (2, value, [name, "", ""]),
+        // Of own parameters, where all acrobots share them. JavaScript lets no other occur.
+        Err(_) => (3, 0.0, [""; 3]),
     };
-    set_bytes([name, "\n", rule, "\n", unit].into_iter().flat_map(str::bytes))
+    let texts = texts.into_iter().flat_map(text);
+    set([(value as f32).to_bits()].into_iter().chain(texts));
+    kind
 }

@@ -1,19 +1,27 @@
 //! Single acrobots: the class `Acrobot` of the package.
 
-use acrobot::arithmetic::Damped;
-use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::Pendulum;
-use acrobot::task::{Gymnasium, Swingup, Task};
-use acrobot::{Acrobot, Action, Fast, Step};
+use std::num::NonZeroU32;
+
+use acrobot::arithmetic::{Arithmetic, Damped};
+use acrobot::numpy::Pcg64;
+use acrobot::physics::{Pendulum, State};
+use acrobot::task::{Draws, Gymnasium, Swingup, Task};
+use acrobot::{Acrobot, Action, Error, Fast, Params, Step};
+use serde::Serialize;
 
 use crate::memory::{self, set_numbers};
+use crate::snapshot::{self, Header, Reader, read};
 use crate::{Tasks, with_task};
+
+type AnyTask = Tasks<Acrobot<Fast>, Acrobot<Damped<Fast>, Swingup>>;
 
 /// An acrobot under a limit of steps.
 pub struct One {
-    acrobot: Tasks<Acrobot<Fast>, Acrobot<Damped<Fast>, Swingup>>,
-    max_steps: u32,
-    elapsed: u32,
+    acrobot: AnyTask,
+    max_steps: NonZeroU32,
+    elapsed_steps: u32,
+    /// What each reset draws of the parameters.
+    draws: Draws<f32>,
     /// Draws random actions.
     action_space: Pcg64,
 }
@@ -23,11 +31,16 @@ pub struct One {
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_new(max_steps: u32, task: u32) -> Option<Box<One>> {
     let (acrobot, limit) = match task {
-        0 => (Tasks::Acrobot(Acrobot::hanging(Pcg64::UNSEEDED)), Gymnasium::LIMIT),
-        _ => (Tasks::Swingup(Acrobot::hanging(Pcg64::UNSEEDED)), Swingup::LIMIT),
+        0 => (Tasks::Acrobot(Acrobot::hanging(Pcg64::UNSEEDED)), Gymnasium::MAX_STEPS),
+        _ => (Tasks::Swingup(Acrobot::hanging(Pcg64::UNSEEDED)), Swingup::MAX_STEPS),
     };
-    let max_steps = if max_steps > 0 { max_steps } else { limit.get() };
-    memory::keep(One { acrobot, max_steps, elapsed: 0, action_space: Pcg64::UNSEEDED })
+    memory::keep(One {
+        acrobot,
+        max_steps: NonZeroU32::new(max_steps).unwrap_or(limit),
+        elapsed_steps: 0,
+        draws: Draws::NONE,
+        action_space: Pcg64::UNSEEDED,
+    })
 }
 
 #[unsafe(no_mangle)]
@@ -38,12 +51,14 @@ pub extern "C" fn acrobot_free(one: Box<One>) {
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_reset(one: &mut One, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words).into());
-    one.elapsed = 0;
+    one.elapsed_steps = 0;
     with_task!(&mut one.acrobot, acrobot => {
         if let Some(seed) = seed {
             *acrobot.rng_mut() = seed;
         }
         set_numbers(acrobot.reset());
+        // Draws and parameters have been checked together.
+        let _ = acrobot.draw_params(&one.draws);
     });
 }
 
@@ -52,8 +67,8 @@ pub extern "C" fn acrobot_reset(one: &mut One, words: usize) {
 fn results(one: &mut One, step: Step) -> u32 {
     let [a, b, c, d, e, f] = step.observation;
     set_numbers([a, b, c, d, e, f, step.reward]);
-    one.elapsed = one.elapsed.saturating_add(1);
-    u32::from(step.terminated) | u32::from(one.elapsed >= one.max_steps) << 1
+    one.elapsed_steps = one.elapsed_steps.saturating_add(1);
+    u32::from(step.terminated) | u32::from(one.elapsed_steps >= one.max_steps.get()) << 1
 }
 
 #[unsafe(no_mangle)]
@@ -94,62 +109,118 @@ pub extern "C" fn acrobot_read(one: &One) {
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_set_state(one: &mut One) -> usize {
+pub extern "C" fn acrobot_set_state(one: &mut One) -> u32 {
     memory::reason(with_task!(&mut one.acrobot, acrobot => acrobot.set_state(memory::get_state())))
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_params(one: &One) {
-    memory::save(with_task!(&one.acrobot, acrobot => acrobot.params()));
+    memory::set_params(with_task!(&one.acrobot, acrobot => acrobot.params()));
+}
+
+/// Checks parameters, and what draws can make of them.
+fn check<A: Arithmetic, T: Task>(
+    acrobot: &Acrobot<A, T>,
+    params: Params<A::Scalar>,
+    draws: &Draws<A::Scalar>,
+) -> Result<(), Error> {
+    let mut trial = acrobot.clone();
+    trial.set_params(params)?;
+    trial.draw_params(draws)
+}
+
+impl One {
+    fn set_params(&mut self, mask: u32) -> Result<(), Error> {
+        with_task!(&mut self.acrobot, acrobot => {
+            let params = memory::changed(*acrobot.params(), mask);
+            check(acrobot, params, &self.draws)?;
+            acrobot.set_params(params)
+        })
+    }
+
+    fn set_draws(&mut self) -> Result<(), Error> {
+        let draws = memory::get_draws()?;
+        with_task!(&self.acrobot, acrobot => check(acrobot, *acrobot.params(), &draws))?;
+        self.draws = draws;
+        Ok(())
+    }
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_set_params(one: &mut One) -> usize {
-    memory::reason(
-        with_task!(&mut one.acrobot, acrobot => acrobot.set_params(memory::get_params())),
-    )
+pub extern "C" fn acrobot_set_params(one: &mut One, mask: u32) -> u32 {
+    memory::reason(one.set_params(mask))
 }
 
-/// Draws a number between the bounds from the acrobot's generator.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_uniform(one: &mut One, _: usize, low: f64, high: f64) -> f64 {
-    with_task!(&mut one.acrobot, acrobot => uniform(acrobot.rng_mut(), low, high))
+pub extern "C" fn acrobot_set_draws(one: &mut One) -> u32 {
+    memory::reason(one.set_draws())
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn acrobot_task(one: &One) -> u32 {
+    one.acrobot.number()
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_max_steps(one: &One) -> u32 {
-    one.max_steps
+    one.max_steps.get()
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_elapsed(one: &One) -> u32 {
-    one.elapsed
+pub extern "C" fn acrobot_elapsed_steps(one: &One) -> u32 {
+    one.elapsed_steps
 }
 
-/// Writes what follows the header in a snapshot of a `TimeLimit<Acrobot<_>>`, in the format of
-/// postcard, and returns its length.
+/// The fields of an acrobot's snapshot after its header.
+type Fields<P, R> = (P, State<f32>, R, NonZeroU32, u32);
+
+/// Saves a snapshot of less than 256 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_save(one: &One) -> usize {
     let (params, state, rng) =
         with_task!(&one.acrobot, acrobot => (acrobot.params(), acrobot.state(), acrobot.rng()));
-    memory::save(&(params, state, rng, one.max_steps, one.elapsed))
+    let fields: Fields<_, _> = (params, state, rng, one.max_steps, one.elapsed_steps);
+    let header = snapshot::header("acrobot", one.acrobot.number());
+    snapshot::save(256, |writer| (header, fields).serialize(writer))
 }
 
-/// Loads what `acrobot_save` writes from the first `len` bytes. Returns false and changes nothing
-/// if it is invalid.
-#[unsafe(no_mangle)]
-pub extern "C" fn acrobot_load(one: &mut One, len: usize) -> bool {
-    let Some(((params, state, rng, max_steps, elapsed), used)) = memory::load(len) else {
-        return false;
-    };
-    let valid = used == len
-        && max_steps > 0
-        && with_task!(&mut one.acrobot, acrobot => {
-            let pendulum = Pendulum::new(params, state);
-            pendulum.map(|pendulum| *acrobot = Acrobot::from_pendulum(pendulum, rng)).is_ok()
-        });
-    if valid {
-        (one.max_steps, one.elapsed) = (max_steps, elapsed);
+fn load<A: Arithmetic<Scalar = f32>, T: Task>(
+    params: Params<f32>,
+    state: State<f32>,
+    rng: Pcg64,
+) -> Option<Acrobot<A, T>> {
+    Some(Acrobot::from_pendulum(Pendulum::new(params, state).ok()?, rng))
+}
+
+impl One {
+    fn load(&mut self, content: &[u8], any_task: bool) -> Option<()> {
+        let mut reader = Reader::from_bytes(content);
+        let task = snapshot::task_of("acrobot", read::<Header>(&mut reader)?)?;
+        let (params, state, rng, max_steps, elapsed_steps) =
+            read::<Fields<Params<f32>, Pcg64>>(&mut reader)?;
+        let is_whole = reader.finalize().is_ok_and(<[u8]>::is_empty);
+        if !is_whole || !any_task && task != self.acrobot.number() {
+            return None;
+        }
+        self.acrobot = match task {
+            0 => Tasks::Acrobot(load(params, state, rng)?),
+            _ => Tasks::Swingup(load(params, state, rng)?),
+        };
+        (self.max_steps, self.elapsed_steps) = (max_steps, elapsed_steps);
+        self.draws = Draws::NONE;
+        Some(())
     }
-    valid
+}
+
+/// Loads a snapshot, of any task or of the same. Returns false and changes nothing if it is
+/// invalid.
+#[unsafe(no_mangle)]
+pub extern "C" fn acrobot_load(
+    one: &mut One,
+    address: *const u8,
+    len: usize,
+    any_task: bool,
+) -> bool {
+    let content = snapshot::open(address, len);
+    content.is_some_and(|content| one.load(content, any_task).is_some())
 }

@@ -1,0 +1,118 @@
+//! Snapshots: those that Rust makes of a `TimeLimit<Acrobot<_>>` and of a `VecBatch` with
+//! postcard's `crc32` functions. The crate's code, for two types of each, would take 20 KB more
+//! than tuples of the same values.
+
+use std::ptr;
+use std::slice;
+
+use acrobot::Fast;
+use acrobot::arithmetic::{Arithmetic, Damped};
+use acrobot::task::{Gymnasium, Swingup, Task};
+use postcard::ser_flavors::{Flavor, Slice};
+use postcard::{Deserializer, Serializer, de_flavors};
+use serde::Deserialize;
+
+use crate::memory::{self, text, zeros};
+
+/// Type, version, task, arithmetic and friction.
+pub type Header<'a> = (&'a str, u32, &'a str, &'a str, bool);
+
+/// As in the crate, whose snapshots the tests compare with.
+pub fn header(of: &'static str, task: u32) -> Header<'static> {
+    const VERSION: u32 = 4;
+    match task {
+        0 => (of, VERSION, Gymnasium::NAME, Fast::NAME, Fast::HAS_FRICTION),
+        _ => (of, VERSION, Swingup::NAME, Damped::<Fast>::NAME, Damped::<Fast>::HAS_FRICTION),
+    }
+}
+
+/// The task of a snapshot with this header.
+pub fn task_of(of: &'static str, found: Header<'_>) -> Option<u32> {
+    [0, 1].into_iter().find(|task| found == header(of, *task))
+}
+
+pub type Writer<'a> = Serializer<Slice<'a>>;
+pub type Reader<'a> = Deserializer<'a, de_flavors::Slice<'a>>;
+
+/// Reads the next value.
+pub fn read<'a, T: Deserialize<'a>>(reader: &mut Reader<'a>) -> Option<T> {
+    T::deserialize(reader).ok()
+}
+
+/// Allocates memory for a snapshot. Returns its address, or 0 without memory.
+#[unsafe(no_mangle)]
+pub extern "C" fn snapshot_new(len: usize) -> *mut u8 {
+    // SAFETY: a byte may be 0.
+    let bytes: Option<Vec<u8>> = unsafe { zeros(len) };
+    bytes.map_or(ptr::null_mut(), |bytes| bytes.leak().as_mut_ptr())
+}
+
+/// Frees memory for a snapshot.
+#[unsafe(no_mangle)]
+pub extern "C" fn snapshot_free(address: *mut u8, len: usize) {
+    // SAFETY: JavaScript has the address from here, with the length.
+    drop(unsafe { Vec::from_raw_parts(address, len, len) });
+}
+
+/// CRC-32 as in zlib.
+fn checksum(bytes: &[u8]) -> [u8; 4] {
+    let crc = bytes.iter().fold(!0, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
+            crc >> 1 ^ 0xedb8_8320 & (crc & 1_u32).wrapping_neg()
+        })
+    });
+    (!crc).to_le_bytes()
+}
+
+/// Makes a snapshot of at most `limit` bytes. Returns its length, or 0 without memory. The address
+/// and the length of its memory are in the words.
+pub fn save(limit: usize, write: impl FnOnce(&mut Writer<'_>) -> postcard::Result<()>) -> usize {
+    // SAFETY: a byte may be 0.
+    let Some(mut bytes) = (unsafe { zeros(limit) }) else {
+        return 0;
+    };
+    let mut writer = Serializer { output: Slice::new(&mut bytes) };
+    let written = write(&mut writer).and_then(|()| writer.output.finalize());
+    let len = written.map_or(0, |written| written.len());
+    if let Some((content, rest)) = bytes.split_at_mut_checked(len)
+        && let Some(to) = rest.first_chunk_mut()
+    {
+        *to = checksum(content);
+    }
+    memory::set(text_of(bytes.leak()));
+    len + 4
+}
+
+fn text_of(bytes: &[u8]) -> [u32; 2] {
+    [bytes.as_ptr().addr() as u32, bytes.len() as u32]
+}
+
+/// A snapshot that JavaScript has written, without its checksum, or `None` if that is wrong.
+pub fn open<'a>(address: *const u8, len: usize) -> Option<&'a [u8]> {
+    // SAFETY: the memory is from here, and JavaScript frees it after the call.
+    let (content, crc) = unsafe { slice::from_raw_parts(address, len) }.split_last_chunk()?;
+    (checksum(content) == *crc).then_some(content)
+}
+
+/// Writes version, friction, type, task and arithmetic. Returns 0 if the checksum is wrong, 1 if
+/// there is no header, or 2. A batch's is after the number of acrobots.
+#[unsafe(no_mangle)]
+pub extern "C" fn snapshot_header(address: *const u8, len: usize) -> u32 {
+    let Some(content) = open(address, len) else {
+        return 0;
+    };
+    let found = ["acrobot", "batch"].into_iter().find_map(|kind| {
+        let mut reader = Reader::from_bytes(content);
+        if kind == "batch" {
+            read::<u32>(&mut reader)?;
+        }
+        let (of, version, task, arithmetic, friction) = read::<Header>(&mut reader)?;
+        if of != kind {
+            return None;
+        }
+        let texts = [of, task, arithmetic].into_iter().flat_map(text);
+        memory::set([version, friction.into()].into_iter().chain(texts));
+        Some(())
+    });
+    found.map_or(1, |()| 2)
+}
