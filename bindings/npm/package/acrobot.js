@@ -2,12 +2,12 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, addressOf as addressOfKept, drawParams, isAction, isFinite32, keep, orFree,
-  readState, seedSample, writeState,
+  ACTION, Kept, TASKS, addressOf as addressOfKept, indexOf, isAction, isFinite32, keep, orFree,
+  readGivenState, readState, seedSample, setState,
 } from "./kept.js";
-import { begins, head, header, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
+import { load, save } from "./snapshot.js";
 import {
-  accept, bytes, checked, invalid, invalidSingle, numbers, positive, wasm, writeSeed,
+  checked, copied, invalid, invalidSingle, numbers, positive, wasm, writeSeed,
 } from "./wasm.js";
 
 /** As a private getter it would throw an error that does not name the class. */
@@ -35,37 +35,32 @@ export class Acrobot extends Kept {
   /** The action or the torque of the last step, for its picture. */
   #action = 1;
   #torque;
-  #task;
 
   constructor(options = {}) {
     super();
-    const names = ["seed", "params", "maxSteps", "task", "paramsRange"];
-    const given = checked("options", options, names);
-    const { seed, params = {}, maxSteps, task = "acrobot", paramsRange = {} } = given;
-    const index = taskIndex(task);
+    const given = checked("options", options, ["seed", "params", "maxSteps", "task", "draws"]);
+    const { seed, params = {}, maxSteps, task = TASKS[0], draws = {} } = given;
+    const index = indexOf("task", TASKS, task);
     const limit = maxSteps === undefined ? 0 : positive("maxSteps", maxSteps);
-    this.#task = task;
     keep(this, "acrobot", wasm().acrobot_new(limit, index), 1);
     orFree(this, () => {
       this.setParams(params);
-      this.setParamsRange(paramsRange);
+      this.setDraws(draws);
       wasm().acrobot_reset(addressOf(this), writeSeed(seed));
-      drawParams(this, 0);
     });
   }
 
   static restore(snapshot) {
-    const acrobot = new this({ task: taskOf("acrobot", unseal(snapshot)) });
-    orFree(acrobot, () => acrobot.restore(snapshot));
+    const copy = copied("the snapshot", snapshot);
+    const acrobot = new this();
+    orFree(acrobot, () => load("acrobot", addressOf(acrobot), copy, true));
     return acrobot;
   }
 
   reset(seed) {
     wasm().acrobot_reset(addressOf(this), seed === undefined ? 0 : writeSeed(seed));
     [this.#action, this.#torque] = [1];
-    const first = observation();
-    drawParams(this, 0);
-    return first;
+    return observation();
   }
 
   step(action) {
@@ -90,8 +85,7 @@ export class Acrobot extends Kept {
   }
 
   get task() {
-    addressOf(this);
-    return this.#task;
+    return TASKS[wasm().acrobot_task(addressOf(this))];
   }
 
   get observation() {
@@ -106,8 +100,8 @@ export class Acrobot extends Kept {
 
   set state(state) {
     addressOf(this);
-    const valueOf = writeState(state);
-    accept(wasm().acrobot_set_state(addressOf(this)), valueOf);
+    const given = readGivenState(state);
+    setState("acrobot", addressOf(this), given);
   }
 
   get energy() {
@@ -120,8 +114,8 @@ export class Acrobot extends Kept {
     return numbers()[5];
   }
 
-  get elapsed() {
-    return wasm().acrobot_elapsed(addressOf(this)) >>> 0;
+  get elapsedSteps() {
+    return wasm().acrobot_elapsed_steps(addressOf(this)) >>> 0;
   }
 
   get maxSteps() {
@@ -129,23 +123,13 @@ export class Acrobot extends Kept {
   }
 
   snapshot() {
-    const length = wasm().acrobot_save(addressOf(this));
-    return seal([head("acrobot", this.#task), bytes().subarray(0, length)]);
+    return save("acrobot", addressOf(this));
   }
 
   restore(snapshot) {
     addressOf(this);
-    const content = unseal(snapshot);
-    const [address, own] = [addressOf(this), head("acrobot", this.#task)];
-    const rule = `the snapshot must be a valid one of ${header(Uint8Array.from(own))}`;
-    const reject = (got) => {
-      throw new RangeError(`${rule}, got ${got}`);
-    };
-    if (content.length > 256) reject(`${content.length} bytes`);
-    const rest = content.subarray(own.length);
-    bytes().set(rest);
-    const valid = begins(content, own) && wasm().acrobot_load(address, rest.length);
-    if (!valid) reject(header(content));
+    const copy = copied("the snapshot", snapshot);
+    load("acrobot", addressOf(this), copy, false);
     [this.#action, this.#torque] = [1];
   }
 

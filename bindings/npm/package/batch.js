@@ -2,12 +2,12 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, PARAMS_LENGTH, addressOf as addressOfKept, drawParams, elements, isAction,
-  isFinite32, keep, orFree, readChanges, readParams, readState, seedSample, writeParams, writeState,
+  ACTION, Kept, TASKS, addressOf as addressOfKept, elements, indexOf, isAction, isFinite32, keep,
+  orFree, readChanges, readGivenState, readParams, readState, seedSample, setState, writeParams,
 } from "./kept.js";
-import { VERSION, begins, head, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
+import { load, save } from "./snapshot.js";
 import {
-  accept, bytes, checked, invalid, numbers, positive, typeOf, wasm, writeSeed,
+  checked, copied, integers, invalid, numbers, positive, typeOf, wasm, writeSeed,
 } from "./wasm.js";
 
 /**
@@ -27,23 +27,14 @@ const ARRAYS = {
 };
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
-/** The error of a batch whose acrobots share their parameters. */
-const shared = () =>
-  invalid("ownParams must be true for parameters of each acrobot", false, ["boolean"]);
-
 /** As a private getter it would throw an error that does not name the class. */
 const addressOf = (batch) => addressOfKept(batch, "batch");
-
-/** An integer in seven bits a byte, the lowest first. The highest bit says whether more follow. */
-const varint = (value) =>
-  value < 128 ? [value] : [(value % 128) | 128, ...varint(Math.floor(value / 128))];
 
 export class Batch extends Kept {
   static get name() {
     return "Batch";
   }
 
-  #count;
   #settings;
   /** The addresses of the arrays. */
   #addresses;
@@ -53,40 +44,43 @@ export class Batch extends Kept {
   #views;
   /** Copies of the results: views of the module's memory end when that memory grows. */
   #results = {};
-  /** Whether resets draw parameters. */
-  #draws = false;
   /** Whether states have changed since the observations were written. */
   #stale = false;
 
   constructor(options) {
     super();
     const names = ["count", "seed", "params", "maxSteps", "autoreset", "ownParams", "task"];
-    const given = checked("options", options, [...names, "paramsRange"]);
-    const { count, seed, params = {}, autoreset = "NextStep", task = "acrobot" } = given;
-    const { paramsRange, ownParams = paramsRange !== undefined } = given;
-    const index = taskIndex(task);
+    const given = checked("options", options, [...names, "draws"]);
+    const { count, seed, params = {}, autoreset = AUTORESETS[0], task = TASKS[0] } = given;
+    const { maxSteps, draws, ownParams = draws !== undefined } = given;
+    const index = indexOf("task", TASKS, task);
     positive("count", count);
-    const limit = given.maxSteps === undefined ? 0 : positive("maxSteps", given.maxSteps);
-    const mode = AUTORESETS.indexOf(autoreset);
-    if (mode < 0) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset, []);
+    const limit = maxSteps === undefined ? 0 : positive("maxSteps", maxSteps);
+    const mode = indexOf("autoreset", AUTORESETS, autoreset);
     if (![true, false].includes(ownParams)) {
       throw invalid("ownParams must be true or false", ownParams, []);
     }
-    const words = writeSeed(seed);
-    keep(this, "batch", wasm().batch_new(count, words, limit, mode, ownParams, index), count);
-    this.#addresses = new Uint32Array(bytes().slice(0, 40).buffer);
-    const maxSteps = this.#addresses[9]; // follows the addresses
-    this.#count = count;
-    this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams, task });
-    this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
+    keep(this, "batch", wasm().batch_new(count, limit, mode, ownParams, index), count);
     orFree(this, () => {
       this.setParams(params);
-      if (paramsRange !== undefined) {
-        this.setParamsRange(paramsRange);
-        for (let i = 0; i < count; i++) drawParams(this, i);
-      }
-      this.#copy(...this.#names);
+      if (draws !== undefined) this.setDraws(draws);
+      wasm().batch_reset(addressOf(this), writeSeed(seed), false);
+      this.#open();
     });
+  }
+
+  /** Reads what does not change except by `restore`. */
+  #open() {
+    wasm().batch_open(addressOf(this));
+    const [count, maxSteps, mode, own, task, ...addresses] = integers().slice(0, 14);
+    const [autoreset, ownParams] = [AUTORESETS[mode], own === 1];
+    const settings = { count, maxSteps, autoreset, ownParams, task: TASKS[task] };
+    this.#settings = Object.freeze(settings);
+    this.#addresses = addresses;
+    this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
+    this.#results = {};
+    this.#views = undefined;
+    this.#copy(...this.#names);
     this.#observe();
   }
 
@@ -95,7 +89,7 @@ export class Batch extends Kept {
     if (!this.#views?.rewards.length) {
       const { buffer } = wasm().memory;
       const views = Object.entries(ARRAYS).map(([name, [Type, width]], i) => {
-        return [name, new Type(buffer, this.#addresses[i], width * this.#count)];
+        return [name, new Type(buffer, this.#addresses[i], width * this.#settings.count)];
       });
       this.#views = Object.fromEntries(views);
     }
@@ -115,15 +109,15 @@ export class Batch extends Kept {
   /** The batch's address, for a use of acrobot `index`. */
   static #addressFor(batch, index, what = "") {
     const address = addressOf(batch);
-    if (!Number.isInteger(index) || index < 0 || index >= batch.#count) {
-      throw invalid(`${what}index must be an integer from 0 to ${batch.#count - 1}`, index);
+    if (!Number.isInteger(index) || index < 0 || index >= batch.count) {
+      throw invalid(`${what}index must be an integer from 0 to ${batch.count - 1}`, index);
     }
     return address;
   }
 
   get count() {
     addressOf(this);
-    return this.#count;
+    return this.#settings.count;
   }
 
   get settings() {
@@ -138,24 +132,22 @@ export class Batch extends Kept {
   }
 
   reset(seed) {
-    addressOf(this);
-    return this.#reset(new Uint8Array(this.#count).fill(1), seed);
+    return this.#reset(undefined, seed);
   }
 
   resetMasked(mask, seed) {
     addressOf(this);
     const isFlag = (element) => [true, false, 1, 0].includes(element);
     const rule = "must be true, false, 1 or 0";
-    return this.#reset(elements("mask", mask, this.#count, isFlag, rule), seed);
+    return this.#reset(elements("mask", mask, this.count, isFlag, rule), seed);
   }
 
   #reset(mask, seed) {
     const address = addressOf(this);
     const words = seed === undefined ? 0 : writeSeed(seed);
     this.#copy();
-    this.#views.mask.set(mask);
-    wasm().batch_reset(address, words);
-    mask.forEach((resets, i) => resets && drawParams(this, i));
+    if (mask) this.#views.mask.set(mask);
+    wasm().batch_reset(address, words, mask !== undefined);
     this.#observe();
     return this.#results.observations;
   }
@@ -178,11 +170,11 @@ export class Batch extends Kept {
 
   #step(what, given, isValid, rule) {
     const [{ name, BYTES_PER_ELEMENT }] = ARRAYS[what];
-    const size = this.#count * BYTES_PER_ELEMENT;
+    const size = this.#settings.count * BYTES_PER_ELEMENT;
     // The module can check elements of this type.
     const isRead = typeOf(given) === name && given.byteLength === size;
     // Reading others can run code that frees the batch or makes memory grow, so it comes first.
-    const inputs = isRead ? given : elements(what, given, this.#count, isValid, rule);
+    const inputs = isRead ? given : elements(what, given, this.#settings.count, isValid, rule);
     const address = addressOf(this);
     this.#copy();
     const written = this.#views[what];
@@ -193,29 +185,24 @@ export class Batch extends Kept {
     }
     this.#copy(...this.#names);
     this.#stale = false;
-    if (this.#draws) {
-      for (let i = 0; i < this.#count; i++) {
-        if (wasm().batch_elapsed(address, i) === 0) drawParams(this, i);
-      }
-    }
     return { ...this.#results };
   }
 
-  state(index) {
+  stateOf(index) {
     wasm().batch_state(Batch.#addressFor(this, index), index);
     return readState();
   }
 
-  setState(index, state) {
+  setStateOf(index, state) {
     Batch.#addressFor(this, index);
-    const valueOf = writeState(state);
-    accept(wasm().batch_set_state(addressOf(this), index), valueOf);
+    const given = readGivenState(state);
+    setState("batch", addressOf(this), given, index);
     this.#stale = true;
   }
 
   get states() {
-    const [address, states] = [addressOf(this), new Float32Array(4 * this.#count)];
-    for (let i = 0; i < this.#count; i++) {
+    const [address, states] = [addressOf(this), new Float32Array(4 * this.#settings.count)];
+    for (let i = 0; i < this.#settings.count; i++) {
       wasm().batch_state(address, i);
       states.set(numbers().subarray(0, 4), 4 * i);
     }
@@ -225,45 +212,17 @@ export class Batch extends Kept {
   setStates(states) {
     addressOf(this);
     const rule = (i) => `must be a finite number of ${i % 4 < 2 ? "rad" : "rad/s"}`;
-    const given = elements("states", states, 4 * this.#count, isFinite32, rule);
+    const given = elements("states", states, 4 * this.#settings.count, isFinite32, rule);
     const address = addressOf(this);
-    for (let i = 0; i < this.#count; i++) {
+    for (let i = 0; i < this.#settings.count; i++) {
       numbers().set(given.slice(4 * i, 4 * i + 4));
       wasm().batch_set_state(address, i);
     }
     this.#stale = true;
   }
 
-  elapsed(index) {
-    return wasm().batch_elapsed(Batch.#addressFor(this, index), index) >>> 0;
-  }
-
-  setParams(changes) {
-    addressOf(this);
-    if (!this.#settings.ownParams) return super.setParams(changes);
-    const given = readChanges(changes);
-    const address = addressOf(this);
-    const before = [];
-    try {
-      for (let i = 0; i < this.#count; i++) {
-        wasm().batch_params(address, i);
-        before.push(bytes().slice(0, PARAMS_LENGTH));
-        writeParams("batch", address, i, given);
-      }
-    } catch (error) {
-      before.forEach((params, i) => {
-        bytes().set(params);
-        wasm().batch_set_params(address, i);
-      });
-      throw error;
-    }
-  }
-
-  setParamsRange(range) {
-    addressOf(this);
-    if (!this.#settings.ownParams) throw shared();
-    super.setParamsRange(range);
-    this.#draws = true;
+  elapsedStepsOf(index) {
+    return wasm().batch_elapsed_steps(Batch.#addressFor(this, index), index) >>> 0;
   }
 
   paramsOf(index) {
@@ -272,84 +231,27 @@ export class Batch extends Kept {
 
   setParamsOf(index, changes) {
     Batch.#addressFor(this, index);
-    if (!this.#settings.ownParams) throw shared();
     const given = readChanges(changes);
-    writeParams("batch", addressOf(this), index, given);
-  }
-
-  #header() {
-    const { count, maxSteps, autoreset, ownParams, task } = this.#settings;
-    const bound = wasm().task_bound(taskIndex(task));
-    const bounds = new Uint8Array(Float64Array.of(-bound, bound).buffer);
-    // No range of parameters.
-    const flags = [AUTORESETS.indexOf(autoreset), Number(ownParams), 0];
-    const begin = [...varint(count + 1), ...head("batch", task), ...bounds];
-    return [...begin, ...varint(maxSteps), ...flags];
+    writeParams("batch", addressOf(this), given, index);
   }
 
   snapshot() {
-    const address = addressOf(this);
-    const member = (_, i) => bytes().slice(0, wasm().batch_save(address, i));
-    const rust = seal([this.#header(), ...Array.from({ length: this.#count }, member)]);
-    if (this.#settings.autoreset !== "Disabled") return rust;
-    this.#copy();
-    return seal([rust, this.#views.ended]);
+    return save("batch", addressOf(this));
   }
 
   static restore(snapshot) {
-    const content = unseal(snapshot);
-    const what = `batch, version ${VERSION}, arithmetic "fast"`;
-    const rule = `the snapshot must be a valid one of a ${what}`;
-    const wrong = new RangeError(`${rule}, got ${content.length} other bytes`);
-    let at = 0;
-    const read = () => {
-      let value = 0;
-      for (let unit = 1, more = true; more && unit < 2 ** 36; unit *= 128) {
-        const byte = content[at++];
-        value += (byte % 128) * unit;
-        more = byte >= 128;
-      }
-      return value;
-    };
-    const count = read() - 1;
-    const task = taskOf("batch", content.subarray(at));
-    if (task === undefined) throw wrong;
-    at += head("batch", task).length + 16;
-    const [maxSteps, mode, own] = [read(), read(), read()];
-    // An acrobot has at least 94 bytes.
-    const isCount = count >= 1 && count < content.length / 94;
-    if (!(isCount && maxSteps >= 1 && maxSteps < 2 ** 32 && mode in AUTORESETS)) throw wrong;
-    const autoreset = AUTORESETS[mode];
-    const batch = new this({ count, maxSteps, autoreset, ownParams: own === 1, task });
-    if (batch.#load(content)) return batch;
-    batch.free();
-    throw wrong;
-  }
-
-  #load(content) {
-    const [address, header] = [addressOf(this), this.#header()];
-    if (!begins(content, header)) return false;
-    let at = header.length;
-    for (let index = 0; index < this.#count; index++) {
-      const member = content.subarray(at, at + 256);
-      bytes().set(member);
-      const length = wasm().batch_load(address, index, member.length);
-      if (length === 0) return false;
-      at += length;
-    }
-    if (this.#settings.autoreset === "Disabled") {
-      const ended = content.subarray(at + 4);
-      if (ended.length !== this.#count || ended.some((flag) => flag > 1)) return false;
-      this.#copy();
-      this.#views.ended.set(ended);
-    } else if (at !== content.length) return false;
-    this.#observe();
-    return true;
+    const copy = copied("the snapshot", snapshot);
+    const batch = new this({ count: 1 });
+    orFree(batch, () => {
+      load("batch", addressOf(batch), copy);
+      batch.#open();
+    });
+    return batch;
   }
 
   draw(context, index, options) {
     const signature = "draw(context, index, options)";
     Batch.#addressFor(this, index, `${signature}: `);
-    draw(signature, context, this.state(index), this.paramsOf(index), 0, options);
+    draw(signature, context, this.stateOf(index), this.paramsOf(index), 0, options);
   }
 }

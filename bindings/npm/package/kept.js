@@ -1,46 +1,58 @@
 // What acrobots and batches share: the checks of their arguments, and what the module keeps.
 
 import {
-  Opaque, accept, bytes, checked, foreign, invalid, invalidSingle, numbers, wasm, writeSeed,
+  Opaque, accept, checked, foreign, invalid, invalidSingle, numbers, wasm, writeSeed,
 } from "./wasm.js";
 
 const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
-/** The units of the parameters, in the order of Rust's `Params`. */
-const UNITS = {
-  length1: "m", length2: "m", mass1: "kg", mass2: "kg", centerOfMass1: "m", centerOfMass2: "m",
-  inertia1: "kg m²", inertia2: "kg m²", gravity: "m/s²", dt: "s", maxVelocity1: "rad/s",
-  maxVelocity2: "rad/s", torques: "N m", torqueNoise: "N m", dynamics: "",
-  friction1: "N m s/rad", friction2: "N m s/rad",
-};
-const NAMES = Object.keys(UNITS);
 const TORQUES = ["torques[0]", "torques[1]", "torques[2]"];
-/** The names of the numbers: sixteen before the byte of the dynamics, and two after it. */
-const SLOTS = NAMES.filter((name) => name !== "dynamics").flatMap((name) =>
-  name === "torques" ? TORQUES : name,
-);
+/** The numbers among the parameters, in the order of the module. */
+const SLOTS = [
+  "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2",
+  "gravity", "dt", "maxVelocity1", "maxVelocity2", ...TORQUES, "torqueNoise", "friction1",
+  "friction2",
+];
+const DYNAMICS_SLOT = SLOTS.length;
+/** What may be drawn. */
+const DRAWN = [...new Set(SLOTS.map((name) => name.replace(/\[.*/, "")))];
+const NAMES = [...DRAWN, "dynamics"];
 const DYNAMICS = ["book", "nips"];
-const DYNAMICS_AT = 64;
-export const PARAMS_LENGTH = 73;
+/** The kinds of draws in the order of the module, with the count of their numbers. */
+const DRAWS = { fixed: 0, asBefore: 0, uniform: 2, logUniform: 2, normal: 4 };
+export const TASKS = ["acrobot", "swingup"];
 export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 
 export const isAction = (action) => action === 0 || action === 1 || action === 2;
 
-export const isFinite32 = (number) =>
-  typeof number === "number" && Number.isFinite(Math.fround(number));
+const isNumber = (value) => typeof value === "number";
+
+export const isFinite32 = (number) => isNumber(number) && Number.isFinite(Math.fround(number));
+
+/** The index of a name, as the module has it. */
+export function indexOf(what, names, name) {
+  const index = names.indexOf(name);
+  if (index < 0) throw invalid(`${what} must be "${names.join('" or "')}"`, name, []);
+  return index;
+}
 
 export const readState = () =>
   Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
 
 function checkNumber(name, value) {
-  if (typeof value !== "number") throw invalid(`${name} must be a number`, value);
+  if (!isNumber(value)) throw invalid(`${name} must be a number`, value);
 }
 
-/** Writes a state into the module's memory. Returns the function that `accept` needs. */
-export function writeState(state) {
+/** The numbers of a state by their names. Reading them can run code of the caller. */
+export function readGivenState(state) {
   const given = checked("state", state, STATE);
   for (const name of STATE) checkNumber(name, given[name]);
+  return given;
+}
+
+/** Sets the state of an acrobot, of a batch that with this index. */
+export function setState(kind, address, given, index) {
   numbers().set(STATE.map((name) => given[name]));
-  return (name) => given[name];
+  accept(wasm()[`${kind}_set_state`](address, index), given);
 }
 
 /**
@@ -66,66 +78,60 @@ export function elements(what, array, count, isValid, rule) {
   return copy;
 }
 
-/** The memory for parameters, whose last two numbers are not aligned, and where a number is. */
-const view = () => new DataView(bytes().buffer, bytes().byteOffset);
-const placeOf = (slot) => (4 * slot < DYNAMICS_AT ? 4 * slot : 4 * slot + 1);
-const put = (name, value) => view().setFloat32(placeOf(SLOTS.indexOf(name)), value, true);
-
-/** The parameters of acrobot `index`, in postcard's format. A single one ignores the index. */
+/** The parameters of acrobot `index`. A single one ignores the index. */
 export function readParams(kind, address, index) {
   wasm()[`${kind}_params`](address, index);
-  const values = SLOTS.map((_, slot) => view().getFloat32(placeOf(slot), true));
+  const values = [...numbers().subarray(0, DYNAMICS_SLOT + 1)];
   const next = (name) => {
-    if (name === "dynamics") return DYNAMICS[bytes()[DYNAMICS_AT]];
+    if (name === "dynamics") return DYNAMICS[values[0]];
     return name === "torques" ? Object.freeze(values.splice(0, 3)) : values.shift();
   };
   return Object.freeze(Object.fromEntries(NAMES.map((name) => [name, next(name)])));
 }
 
-/** Changed parameters by their names in `SLOTS`. Reading them can run code of the caller. */
-export function readChanges(changes) {
-  const given = checked("params", changes, NAMES);
+/** Properties of an object by their names in `SLOTS`: of `torques`, each element. */
+function readSlots(what, object, names) {
+  const given = checked(what, object, names);
   if ("torques" in given) {
-    const { torques } = given;
+    const torques = elements("torques", given.torques, 3, () => true);
     delete given.torques;
-    if (!Array.isArray(torques) || torques.length !== 3) {
-      throw invalid("torques must be an array of 3 numbers", torques, []);
-    }
     TORQUES.forEach((name, i) => (given[name] = torques[i]));
-  }
-  for (const [name, value] of Object.entries(given)) {
-    if (name !== "dynamics") checkNumber(name, value);
-    else if (!DYNAMICS.includes(value)) {
-      throw invalid('dynamics must be "book" or "nips"', value, []);
-    }
   }
   return given;
 }
 
-/** Changes what `readChanges` returns in the parameters of acrobot `index`, or of all with 0. */
-export function writeParams(kind, address, index, given) {
-  wasm()[`${kind}_params`](address, index);
+/** Changed parameters. Reading them can run code of the caller. */
+export function readChanges(changes) {
+  const given = readSlots("params", changes, NAMES);
   for (const [name, value] of Object.entries(given)) {
-    if (name === "dynamics") bytes()[DYNAMICS_AT] = DYNAMICS.indexOf(value);
-    else put(name, value);
+    if (name === "dynamics") given[name] = indexOf(name, DYNAMICS, value);
+    else checkNumber(name, value);
   }
-  const length = wasm()[`${kind}_set_params`](address, index);
-  accept(length, (name) => given[name] ?? readParams(kind, address, index)[name]);
+  return given;
 }
 
-/** Ranges of parameters, as rows of name, low and high. */
-function readRanges(range) {
-  const names = NAMES.filter((name) => !["torques", "dynamics"].includes(name));
-  const given = checked("range", range, names);
-  return Object.entries(given).map(([name, ends]) => {
-    const number = (end) => typeof end === "number";
-    const [low, high] = elements(name, ends, 2, number, "must be a number");
-    if (low > high) {
-      const rule = `${name} must have a low of at most its high, in ${UNITS[name]}`;
-      throw invalid(rule, [low, high], ["object"]);
-    }
-    return [name, low, high];
-  });
+/** Changes what `readChanges` returns in the parameters of all acrobots, or of acrobot `index`. */
+export function writeParams(kind, address, given, index) {
+  let mask = 0;
+  for (const [name, value] of Object.entries(given)) {
+    const slot = name === "dynamics" ? DYNAMICS_SLOT : SLOTS.indexOf(name);
+    numbers()[slot] = value;
+    mask |= 1 << slot;
+  }
+  accept(wasm()[`${kind}_set_params`](address, mask, index !== undefined, index), given);
+}
+
+/** A draw as the module reads it: the index of its kind, and its numbers. */
+function readDraw(name, draw) {
+  const object = Array.isArray(draw) ? { uniform: draw } : draw;
+  const given = typeof draw === "string" ? [[draw, []]] : Object.entries(object ?? {});
+  const [[kind, array] = []] = given;
+  const index = Object.keys(DRAWS).indexOf(kind);
+  if (index < 0 || given.length > 1) {
+    const forms = "[low, high], { logUniform: [low, high] }, { normal: [mean, std, low, high] }";
+    throw invalid(`${name} must be drawn by ${forms}, "asBefore" or "fixed"`, draw, []);
+  }
+  return [index, ...elements(name, array, DRAWS[kind], isNumber, "must be a number")];
 }
 
 /** Frees what the program has forgotten to free, if the engine says when. */
@@ -137,15 +143,13 @@ const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(fre
  * No caller of the package reaches them, so the module gets only addresses of its own, and none
  * that it has freed. Each use begins with `addressOf`, whose errors come before others.
  */
-export let keep, addressOf, drawParams, seedSample;
+export let keep, addressOf, seedSample;
 let own;
 
 /** What the module keeps at an address: an acrobot or a batch. */
 export class Kept extends Opaque {
   #kind;
   #address = 0;
-  /** The ranges from which each reset draws parameters. */
-  #ranges = [];
   /** Whether random actions have a seed. */
   #samples = false;
 
@@ -166,17 +170,6 @@ export class Kept extends Opaque {
       if (own(kept, kind).#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
       return kept.#address;
     };
-    // As in the crate: after the initial state, from the same generator.
-    drawParams = (kept, index) => {
-      if (kept.#ranges.length === 0) return;
-      const [kind, address] = [kept.#kind, addressOf(kept)];
-      wasm()[`${kind}_params`](address, index);
-      for (const [name, low, high] of kept.#ranges) {
-        const isFixed = low === high;
-        put(name, isFixed ? low : wasm()[`${kind}_uniform`](address, index, low, high));
-      }
-      wasm()[`${kind}_set_params`](address, index);
-    };
     // Returns the number of words of the seed, which is random the first time.
     seedSample = (kept, seed) => {
       if (seed === undefined && kept.#samples) return 0;
@@ -194,25 +187,17 @@ export class Kept extends Opaque {
   setParams(changes) {
     addressOf(this);
     const given = readChanges(changes);
-    writeParams(this.#kind, addressOf(this), 0, given);
+    writeParams(this.#kind, addressOf(this), given);
   }
 
-  setParamsRange(range) {
+  setDraws(draws) {
     addressOf(this);
-    const ranges = readRanges(range);
-    const [kind, address] = [this.#kind, addressOf(this)];
-    wasm()[`${kind}_params`](address, 0);
-    const before = bytes().slice(0, PARAMS_LENGTH);
-    try {
-      for (const end of [1, 2]) {
-        const ends = Object.fromEntries(ranges.map((row) => [row[0], row[end]]));
-        writeParams(kind, address, 0, ends);
-      }
-    } finally {
-      bytes().set(before);
-      wasm()[`${kind}_set_params`](address, 0);
-    }
-    this.#ranges = ranges.map(([name, ...ends]) => [name, ...ends.map(Math.fround)]);
+    const given = readSlots("draws", draws, DRAWN);
+    for (const [name, draw] of Object.entries(given)) given[name] = readDraw(name, draw);
+    const address = addressOf(this);
+    numbers().fill(0);
+    for (const [name, row] of Object.entries(given)) numbers().set(row, 5 * SLOTS.indexOf(name));
+    accept(wasm()[`${this.#kind}_set_draws`](address), given);
   }
 
   free() {
@@ -232,8 +217,8 @@ export class Kept extends Opaque {
     const { name } = this.constructor;
     if (!(#address in this)) return `${name} proxy or copy`;
     if (this.#address === 0) return `${name} freed`;
-    const { state, elapsed, maxSteps, params, settings } = this; // an acrobot has no settings
-    return `${name} ${inspect(settings ?? { state, elapsed, maxSteps, params }, options)}`;
+    const { state, elapsedSteps, maxSteps, params, settings } = this; // an acrobot has no settings
+    return `${name} ${inspect(settings ?? { state, elapsedSteps, maxSteps, params }, options)}`;
   }
 }
 

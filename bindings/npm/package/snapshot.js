@@ -1,80 +1,47 @@
-// The checksum and the header of a snapshot.
+// Saves and loads snapshots, which the module reads and writes.
 
-import { copied, invalid } from "./wasm.js";
+import { bytes, copied, integers, text, wasm } from "./wasm.js";
 
-/** CRC-32 as in zlib. postcard's `crc32` functions append it to a snapshot, too. */
-function checksum(bytes) {
-  let crc = -1;
-  for (const byte of bytes) {
-    crc ^= byte;
-    for (let bit = 0; bit < 8; bit++) crc = (crc >>> 1) ^ (crc & 1 && 0xedb88320);
-  }
-  return ~crc >>> 0;
-}
+const noMemory = (length) =>
+  new RangeError(`a snapshot must fit into WebAssembly's memory of 4 GiB, got ${length} bytes`);
 
-/** Joins the parts of a snapshot, and adds the checksum. */
-export function seal(parts) {
-  const length = parts.reduce((sum, part) => sum + part.length, 0);
-  const snapshot = new Uint8Array(length + 4);
-  let at = 0;
-  for (const part of parts) {
-    snapshot.set(part, at);
-    at += part.length;
-  }
-  new DataView(snapshot.buffer).setUint32(length, checksum(snapshot.subarray(0, length)), true);
+export function save(kind, address) {
+  const length = wasm()[`${kind}_save`](address);
+  if (length === 0) throw noMemory("too many");
+  const [at, allocated] = integers();
+  const snapshot = bytes(at, length).slice();
+  wasm().snapshot_free(at, allocated);
   return snapshot;
 }
 
-/** A snapshot without its checksum. */
-export function unseal(snapshot) {
-  const copy = copied("the snapshot", snapshot);
-  const content = copy.subarray(0, -4);
-  if (seal([content]).some((byte, i) => byte !== copy[i])) {
-    const rule = "the snapshot must have the bytes of snapshot()";
-    throw new RangeError(`${rule}, got ${copy.length} bytes with another checksum`);
+/** Calls a function with the address and the length of a copy in the module's memory. */
+function lent(snapshot, call) {
+  const { length } = snapshot;
+  const at = wasm().snapshot_new(length) >>> 0;
+  if (at === 0) throw noMemory(length);
+  bytes(at, length).set(snapshot);
+  try {
+    return call(at, length);
+  } finally {
+    wasm().snapshot_free(at, length);
   }
-  return content;
 }
 
-/** By task, in the order of the module's numbers: the crate's name, and whether it has friction. */
-const TASKS = { acrobot: ["gymnasium", 0], swingup: ["swingup", 1] };
+/** What a snapshot says that it is. */
+const described = (snapshot) =>
+  lent(snapshot, (...given) => {
+    const found = wasm().snapshot_header(...given);
+    const what = ["bytes with another checksum", "other bytes"][found];
+    if (what) return `${snapshot.length} ${what}`;
+    const [version, friction] = integers();
+    const names = `task "${text(4)}", arithmetic "${text(6)}", friction ${friction === 1}`;
+    return `"${text(2)}", version ${version}, ${names}`;
+  });
 
-/** The module's number of a task. */
-export function taskIndex(task) {
-  const names = Object.keys(TASKS);
-  if (!names.includes(task)) throw invalid(`task must be ${names.join(" or ")}`, task, []);
-  return names.indexOf(task);
-}
-
-/** The version of the crate's snapshots. */
-export const VERSION = 3;
-
-/** The bytes of a header. */
-export function head(kind, task) {
-  const text = (text) => [text.length, ...Array.from(text, (letter) => letter.charCodeAt(0))];
-  const [name, friction] = TASKS[task];
-  return [...text(kind), VERSION, ...text(name), ...text("fast"), friction];
-}
-
-/** Whether bytes begin with others. */
-export const begins = (bytes, others) => others.every((byte, i) => byte === bytes[i]);
-
-/** The task of a snapshot whose header begins at its first byte, or undefined. */
-export const taskOf = (kind, bytes) =>
-  Object.keys(TASKS).find((task) => begins(bytes, head(kind, task)));
-
-/** The header of a snapshot: texts after their lengths, version and friction. */
-export function header(bytes) {
-  let at = 0;
-  const byte = () => bytes[at++];
-  const text = () => {
-    const start = at + 1;
-    at = start + bytes[at];
-    return `"${String.fromCharCode(...bytes.subarray(start, at))}"`;
-  };
-  const own = `${text()}, version ${byte()}`;
-  const rest = `, task ${text()}, arithmetic ${text()}, friction ${[false, true][byte()]}`;
-  // Other versions have other fields.
-  const form = /^"\w+", version \d+(, task "\w+", arithmetic "[\w ]+", friction (true|false)$)?/;
-  return form.exec(own + rest)?.[0] ?? `${bytes.length} other bytes`;
+/** Loads a copy of a snapshot, of the same task or of any, or throws. */
+export function load(kind, address, snapshot, anyTask) {
+  if (lent(snapshot, (...given) => wasm()[`${kind}_load`](address, ...given, anyTask))) return;
+  const [own, got] = [save(kind, address), snapshot].map(described);
+  const found = got === own ? "one with invalid contents" : got;
+  throw new RangeError(`the snapshot must be a valid one of ${own}, got ${found}`);
 }

@@ -41,23 +41,28 @@ export function wasm() {
   return (shared ??= instantiate());
 }
 
-let numbersView = new Float32Array();
-let bytesView = new Uint8Array();
+let views = [];
 
-/** The memory for sixteen numbers. Every view of memory has length 0 once the memory has grown. */
-export function numbers() {
-  if (numbersView.length === 0) {
-    const { memory, bytes } = wasm();
-    numbersView = new Float32Array(memory.buffer, bytes(), 16);
+/**
+ * The module's words, as unsigned integers and as single-precision numbers. Every view of memory
+ * has length 0 once the memory has grown.
+ */
+function words() {
+  if (!views[0]?.length) {
+    const { memory, words } = wasm();
+    views = [Uint32Array, Float32Array].map((Type) => new Type(memory.buffer, words(), 90));
   }
-  return numbersView;
+  return views;
 }
 
-/** The same memory, as 256 bytes. */
-export function bytes() {
-  if (bytesView.length === 0) bytesView = new Uint8Array(wasm().memory.buffer, wasm().bytes(), 256);
-  return bytesView;
-}
+export const integers = () => words()[0];
+export const numbers = () => words()[1];
+
+/** A part of the module's memory. */
+export const bytes = (address, length) => new Uint8Array(wasm().memory.buffer, address, length);
+
+/** The text whose address and length are in the words from `at` on. */
+export const text = (at) => decoded(bytes(...integers().subarray(at, at + 2)));
 
 /** A text of the module. jsdom has no TextDecoder. */
 export function decoded(utf8) {
@@ -184,23 +189,27 @@ export function seedWords(seed = Math.floor(Math.random() * 2 ** 53)) {
   return words;
 }
 
-/** Writes a seed into the module's memory. Returns the number of words. */
+/** Writes a seed into the module's words. Returns their number. */
 export function writeSeed(seed) {
   const words = seedWords(seed);
-  bytes().set(new Uint8Array(Uint32Array.from(words).buffer));
+  integers().set(words);
   return words.length;
 }
 
 /**
- * Throws if the module has rejected numbers: then `length` is that of the reason. `valueOf` returns
- * the number with a name.
+ * Throws if the module has rejected numbers. `given` has those of the caller by their names, as
+ * numbers or in arrays.
  */
-export function accept(length, valueOf) {
-  if (length === 0) return;
-  const [name, rule, unit] = decoded(bytes().slice(0, length)).split("\n");
-  const plain = name.replace(".joint", "");
-  const camel = plain.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
-  // JavaScript chooses no arithmetic, but a task.
-  const own = rule.replace("the arithmetic is Damped", 'the task is "swingup"');
-  throw invalidSingle(`${camel} must be ${own} ${unit}`, valueOf(camel));
+export function accept(kind, given = {}) {
+  if (kind === 0) return;
+  const shared = "ownParams must be true for parameters of each acrobot";
+  if (kind === 3) throw invalid(shared, false, ["boolean"]);
+  const [value] = numbers();
+  const camel = (_, letter) => letter.toUpperCase();
+  const name = text(1).replace(".joint", "").replace(/_(\w)/g, camel);
+  const friction = '0 unless the task is "swingup", in N m s/rad';
+  const rule = kind === 2 ? friction : `${text(3)} ${text(5)}`;
+  // That which the caller gave, before it was rounded.
+  const own = [given[name]].flat().find((number) => Object.is(Math.fround(number), value));
+  throw invalidSingle(`${name} must be ${rule}`, own ?? value);
 }

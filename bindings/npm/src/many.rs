@@ -11,7 +11,7 @@ use acrobot::{Error, Fast, Params, ResetOptions};
 use serde::Serialize;
 
 use crate::memory::{self, set_numbers, zeros};
-use crate::snapshot::{self, Header, Reader, read};
+use crate::snapshot::{self, Reader, read};
 use crate::{Tasks, with_task};
 
 /// As many as one vector of simd128 has. More take more code and more time.
@@ -177,14 +177,13 @@ pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
 impl Many {
     /// Notes the torques of the actions: of all acrobots, or of those that a reset has changed.
     fn note_torques(&mut self, all: bool) {
-        for (index, torques) in self.torques_of.iter_mut().enumerate() {
-            let (elapsed, params) = with_task!(&self.batch, batch => {
-                (batch.elapsed_steps_of(index), batch.params_of(index))
-            });
-            if all || elapsed == Some(0) {
-                *torques = params.map_or(*torques, |params| params.torques);
+        with_task!(&self.batch, batch => {
+            for (index, torques) in self.torques_of.iter_mut().enumerate() {
+                if all || batch.elapsed_steps_of(index) == Some(0) {
+                    *torques = batch.params_of(index).map_or(*torques, |params| params.torques);
+                }
             }
-        }
+        });
     }
 
     /// Makes torques of the actions: steps of actions, too, would take 21 KB. Returns false if an
@@ -305,32 +304,36 @@ pub extern "C" fn batch_set_draws(many: &mut Many) -> u32 {
     memory::reason(many.set_draws())
 }
 
-/// The fields of a batch's snapshot before its acrobots: their number and one, the header, the
+/// The fields of a batch's snapshot after the number of acrobots and one, and the header: the
 /// bounds of initial states, the limit of steps, when resets are, and whether parameters are own.
-type Settings<'a> = (u32, Header<'a>, f64, f64, NonZeroU32, Autoreset, bool, Params<Draw<f32>>);
+type Settings = (f64, f64, NonZeroU32, Autoreset, bool);
 
 /// The fields of an acrobot.
-type Fields = (Params<f32>, State<f32>, u32, bool, Pcg64);
+type Fields = (State<f32>, u32, bool, Pcg64);
 
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_save(many: &Many) -> usize {
     let (count, own) = (many.actions.len(), many.own_params);
     let header = snapshot::header("batch", many.batch.number());
-    let settings: Settings = with_task!(&many.batch, batch => {
+    let (settings, draws): (Settings, _) = with_task!(&many.batch, batch => {
         let (bounds, draws) = (batch.reset_bounds(), *batch.draws().params());
         let (low, high, limit) = (bounds.low(), bounds.high(), batch.max_steps());
-        (count as u32 + 1, header, low, high, limit, batch.autoreset(), own, draws)
+        ((low, high, limit, batch.autoreset(), own), draws)
     });
     // The settings have less than 512 bytes, each acrobot at most 151.
     snapshot::save(512 + count * 151, |writer| {
+        (count as u32 + 1).serialize(&mut *writer)?;
+        snapshot::write_header(header, writer)?;
         settings.serialize(&mut *writer)?;
+        snapshot::write_params(draws, writer)?;
         for index in 0..count {
-            let fields: Option<Fields> = with_task!(&many.batch, batch => {
+            let fields: Option<(_, Fields)> = with_task!(&many.batch, batch => {
                 batch.member(index).map(|Member { params, state, elapsed_steps, ended, rng }| {
-                    (params, state, elapsed_steps, ended, rng)
+                    (params, (state, elapsed_steps, ended, rng))
                 })
             });
-            if let Some(fields) = fields {
+            if let Some((params, fields)) = fields {
+                snapshot::write_params(params, writer)?;
                 fields.serialize(&mut *writer)?;
             }
         }
@@ -340,17 +343,20 @@ pub extern "C" fn batch_save(many: &Many) -> usize {
 
 fn load(content: &[u8]) -> Option<Many> {
     let mut reader = Reader::from_bytes(content);
-    let (records, header, low, high, max_steps, autoreset, own_params, draws) =
-        read::<Settings>(&mut reader)?;
-    let task = snapshot::task_of("batch", header)?;
-    let count = records.checked_sub(1)? as usize;
+    let count = read::<u32>(&mut reader)?.checked_sub(1)? as usize;
+    let task = snapshot::task_of("batch", snapshot::read_header(&mut reader)?)?;
+    let (low, high, max_steps, autoreset, own_params) = read::<Settings>(&mut reader)?;
+    let mut draws: Params<Draw<f32>> = Draws::FIXED;
+    snapshot::read_params(&mut reader, &mut draws)?;
     // Parameters and state have 89 bytes. Other numbers could take all memory.
     if count > content.len() / 89 {
         return None;
     }
     let mut many = Many::new(count, own_params, task)?;
     for index in 0..count {
-        let (params, state, elapsed_steps, ended, rng) = read::<Fields>(&mut reader)?;
+        let mut params = Params::DEFAULT;
+        snapshot::read_params(&mut reader, &mut params)?;
+        let (state, elapsed_steps, ended, rng) = read::<Fields>(&mut reader)?;
         with_task!(&mut many.batch, batch => {
             // The first brings the parameters, if all acrobots share them.
             if index == 0 {

@@ -10,7 +10,7 @@ use acrobot::{Acrobot, Action, Error, Fast, Params, Step};
 use serde::Serialize;
 
 use crate::memory::{self, set_numbers};
-use crate::snapshot::{self, Header, Reader, read};
+use crate::snapshot::{self, Reader, read};
 use crate::{Tasks, with_task};
 
 type AnyTask = Tasks<Acrobot<Fast>, Acrobot<Damped<Fast>, Swingup>>;
@@ -172,16 +172,20 @@ pub extern "C" fn acrobot_elapsed_steps(one: &One) -> u32 {
 }
 
 /// The fields of an acrobot's snapshot after its header.
-type Fields<P, R> = (P, State<f32>, R, NonZeroU32, u32);
+type Fields<R> = (State<f32>, R, NonZeroU32, u32);
 
 /// Saves a snapshot of less than 256 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_save(one: &One) -> usize {
     let (params, state, rng) =
-        with_task!(&one.acrobot, acrobot => (acrobot.params(), acrobot.state(), acrobot.rng()));
-    let fields: Fields<_, _> = (params, state, rng, one.max_steps, one.elapsed_steps);
+        with_task!(&one.acrobot, acrobot => (*acrobot.params(), acrobot.state(), acrobot.rng()));
+    let fields: Fields<_> = (state, rng, one.max_steps, one.elapsed_steps);
     let header = snapshot::header("acrobot", one.acrobot.number());
-    snapshot::save(256, |writer| (header, fields).serialize(writer))
+    snapshot::save(256, |writer| {
+        snapshot::write_header(header, writer)?;
+        snapshot::write_params(params, writer)?;
+        fields.serialize(writer)
+    })
 }
 
 fn load<A: Arithmetic<Scalar = f32>, T: Task>(
@@ -195,9 +199,10 @@ fn load<A: Arithmetic<Scalar = f32>, T: Task>(
 impl One {
     fn load(&mut self, content: &[u8], any_task: bool) -> Option<()> {
         let mut reader = Reader::from_bytes(content);
-        let task = snapshot::task_of("acrobot", read::<Header>(&mut reader)?)?;
-        let (params, state, rng, max_steps, elapsed_steps) =
-            read::<Fields<Params<f32>, Pcg64>>(&mut reader)?;
+        let task = snapshot::task_of("acrobot", snapshot::read_header(&mut reader)?)?;
+        let mut params = Params::DEFAULT;
+        snapshot::read_params(&mut reader, &mut params)?;
+        let (state, rng, max_steps, elapsed_steps) = read::<Fields<Pcg64>>(&mut reader)?;
         let is_whole = reader.finalize().is_ok_and(<[u8]>::is_empty);
         if !is_whole || !any_task && task != self.acrobot.number() {
             return None;

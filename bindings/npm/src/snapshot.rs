@@ -5,12 +5,13 @@
 use std::ptr;
 use std::slice;
 
-use acrobot::Fast;
+use acrobot::{Fast, Params};
 use acrobot::arithmetic::{Arithmetic, Damped};
+use acrobot::physics::Dynamics;
 use acrobot::task::{Gymnasium, Swingup, Task};
 use postcard::ser_flavors::{Flavor, Slice};
 use postcard::{Deserializer, Serializer, de_flavors};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::memory::{self, text, zeros};
 
@@ -37,6 +38,50 @@ pub type Reader<'a> = Deserializer<'a, de_flavors::Slice<'a>>;
 /// Reads the next value.
 pub fn read<'a, T: Deserialize<'a>>(reader: &mut Reader<'a>) -> Option<T> {
     T::deserialize(reader).ok()
+}
+
+// Field by field: reading and writing it as a tuple would take 2 KB more.
+pub fn read_header<'a>(reader: &mut Reader<'a>) -> Option<Header<'a>> {
+    Some((read(reader)?, read(reader)?, read(reader)?, read(reader)?, read(reader)?))
+}
+
+pub fn write_header(header: Header<'_>, writer: &mut Writer<'_>) -> postcard::Result<()> {
+    let (of, version, task, arithmetic, friction) = header;
+    of.serialize(&mut *writer)?;
+    version.serialize(&mut *writer)?;
+    task.serialize(&mut *writer)?;
+    arithmetic.serialize(&mut *writer)?;
+    friction.serialize(&mut *writer)
+}
+
+/// Reads parameters or draws over others.
+pub fn read_params<'a, S: Copy + Deserialize<'a>>(
+    reader: &mut Reader<'a>,
+    params: &mut Params<S>,
+) -> Option<()> {
+    let mut dynamics = Dynamics::Book;
+    for (slot, number) in params.numbers_mut().into_iter().enumerate() {
+        if slot == 16 {
+            dynamics = read(reader)?;
+        }
+        *number = read(reader)?;
+    }
+    params.dynamics = dynamics;
+    Some(())
+}
+
+pub fn write_params<S: Copy + Serialize>(
+    mut params: Params<S>,
+    writer: &mut Writer<'_>,
+) -> postcard::Result<()> {
+    let dynamics = params.dynamics;
+    for (slot, number) in params.numbers_mut().into_iter().enumerate() {
+        if slot == 16 {
+            dynamics.serialize(&mut *writer)?;
+        }
+        number.serialize(&mut *writer)?;
+    }
+    Ok(())
 }
 
 /// Allocates memory for a snapshot. Returns its address, or 0 without memory.
@@ -106,7 +151,7 @@ pub extern "C" fn snapshot_header(address: *const u8, len: usize) -> u32 {
         if kind == "batch" {
             read::<u32>(&mut reader)?;
         }
-        let (of, version, task, arithmetic, friction) = read::<Header>(&mut reader)?;
+        let (of, version, task, arithmetic, friction) = read_header(&mut reader)?;
         if of != kind {
             return None;
         }

@@ -46,12 +46,13 @@ const USES = [
   ["batch", [2, -2, 0.5], (batch, torques) => batch.stepTorque(torques)],
   ["batch", Float32Array.of(2, -2, 0.5), (batch, torques) => batch.stepTorque(torques)],
   ["batch", STATES, (batch, states) => batch.setStates(states)],
-  ["acrobot", { mass1: [1, 2] }, (acrobot, range) => acrobot.setParamsRange(range)],
-  ["acrobot", [1, 2], (acrobot, mass1) => acrobot.setParamsRange({ mass1 })],
+  ["acrobot", { mass1: [1, 2] }, (acrobot, draws) => acrobot.setDraws(draws)],
+  ["acrobot", [1, 2], (acrobot, mass1) => acrobot.setDraws({ mass1 })],
+  ["acrobot", { logUniform: [1, 2] }, (acrobot, mass1) => acrobot.setDraws({ mass1 })],
   ["batch", PARAMS, (batch, params) => batch.setParams(params)],
   ["acrobot", PARAMS, (acrobot, params) => acrobot.setParams(params)],
   ["batch", [true, 0, 1], (batch, mask) => batch.resetMasked(mask)],
-  ["batch", STATE, (batch, state) => batch.setState(1, state)],
+  ["batch", STATE, (batch, state) => batch.setStateOf(1, state)],
   ["acrobot", PARAMS.torques, (acrobot, torques) => acrobot.setParams({ torques })],
   ["acrobot", STATE, (acrobot, state) => (acrobot.state = state)],
   ["acrobot", SNAPSHOT, (acrobot, snapshot) => acrobot.restore(snapshot)],
@@ -72,7 +73,7 @@ const make = (kind) =>
 function seen(of) {
   if (!of.count) return of.snapshot();
   const numbers = [...Array(of.count).keys()];
-  return [of.params, numbers.map((i) => of.state(i)), of.step(numbers.map((i) => i % 3))];
+  return [of.params, numbers.map((i) => of.stateOf(i)), of.step(numbers.map((i) => i % 3))];
 }
 
 test("an argument that frees what gets it is rejected, and changes no other acrobot", () => {
@@ -153,7 +154,7 @@ test("arrays in shared, resized and detached memory have the elements that they 
   assert.deepEqual(Acrobot.restore(shared(SNAPSHOT)).snapshot(), SNAPSHOT);
   assert.throws(() => one.step(shared([0, 1, 9])), /RangeError: actions\[2\] must be 0 .*, got 9$/);
   const damaged = shared(SNAPSHOT.map((byte) => byte ^ 1));
-  assert.throws(() => Acrobot.restore(damaged), /^RangeError: the snapshot must have the bytes of/);
+  assert.throws(() => Acrobot.restore(damaged), /^RangeError: the snapshot .* with another checksum$/);
 
   const detached = (bytes) => {
     const array = Uint8Array.from(bytes);

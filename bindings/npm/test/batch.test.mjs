@@ -38,7 +38,7 @@ function together(batch, others) {
         ended[i] = false;
         assert.deepEqual(found, [0, 0]);
       } else {
-        const isOver = autoreset === "Disabled" && ended[i] && other.elapsed > 0;
+        const isOver = autoreset === "Disabled" && ended[i] && other.elapsedSteps > 0;
         const { observation, reward, terminated, truncated } = other[method](inputs[i]);
         ended[i] = isOver || terminated || truncated;
         assert.deepEqual(found, [reward, Number(ended[i])]);
@@ -50,8 +50,8 @@ function together(batch, others) {
         }
       }
       assert.deepEqual(row(results.observations, i), other.observation);
-      const seen = [batch.state(i), batch.elapsed(i), batch.paramsOf(i)];
-      assert.deepEqual(seen, [other.state, other.elapsed, other.params]);
+      const seen = [batch.stateOf(i), batch.elapsedStepsOf(i), batch.paramsOf(i)];
+      assert.deepEqual(seen, [other.state, other.elapsedSteps, other.params]);
     }
     assert.equal("finalObservations" in results, autoreset === "SameStep");
     return results;
@@ -72,54 +72,81 @@ for (const autoreset of ["NextStep", "SameStep", "Disabled"]) {
       for (let i = 1; i < COUNT; i++) {
         if (mask[i]) others[i].reset(seed && child(seed, i));
         assert.deepEqual(row(observations, i), others[i].observation);
-        assert.equal(batch.elapsed(i), others[i].elapsed);
+        assert.equal(batch.elapsedStepsOf(i), others[i].elapsedSteps);
       }
     }
   });
 }
 
 test("a swing-up whose resets draw parameters has the bits of acrobots alone", () => {
-  const paramsRange = { friction1: [0, 0.1], mass2: [0.8, 1.2], gravity: [9.8, 9.8] };
-  const options = { ...OPTIONS, task: "swingup", params: { torqueNoise: 0.1 }, paramsRange };
+  const torques = ["fixed", "fixed", [1, 2]];
+  const draws = { friction1: [0, 0.1], mass2: [0.8, 1.2], gravity: [9.8, 9.8], torques };
+  const options = { ...OPTIONS, task: "swingup", params: { torqueNoise: 0.1 }, draws };
   for (const autoreset of ["NextStep", "SameStep"]) {
     const [batch, others] = [new Batch({ ...options, autoreset }), alone(options)];
     const step = together(batch, others);
     const masses = new Set();
     for (let steps = 0; steps < 60; steps++) {
       const torques = Float32Array.from(all(0), () => random(401) / 100 - 2);
-      step("stepTorque", steps % 2 ? torques : [...torques]);
+      if (steps % 3 === 0) step("step", randomActions());
+      else step("stepTorque", steps % 2 ? torques : [...torques]);
       for (const { params } of others) masses.add(params.mass2);
     }
     assert.ok(masses.size > 2 * COUNT, `${masses.size} masses`);
     const resumed = Batch.restore(batch.snapshot());
     assert.deepEqual(resumed.settings, batch.settings);
-    const [one, other] = [resumed, batch].map((each) => each.stepTorque(all(1)));
-    assert.deepEqual([one.observations, one.rewards], [other.observations, other.rewards]);
-    batch.setParamsRange({});
+    // A snapshot has the draws.
+    for (let steps = 0; steps < 30; steps++) {
+      const [one, other] = [resumed, batch].map((each) => each.step(all(2)));
+      assert.deepEqual([one.observations, one.rewards], [other.observations, other.rewards]);
+    }
+    batch.setDraws({});
     const { mass2 } = batch.paramsOf(3);
     batch.reset();
     assert.equal(batch.paramsOf(3).mass2, mass2);
   }
 });
 
-test("a reset draws from a range as NumPy does, after the initial state", () => {
-  const ranges = { gravity: [9, 10], mass2: [0.8, 1.2] };
-  const batch = new Batch({ seed: 42, count: 3, paramsRange: ranges });
-  // By NumPy. Rust and Python compare with the same numbers.
-  const file = new URL("../../../tests/data/draws.json", import.meta.url);
-  const drawn = JSON.parse(readFileSync(file, "utf8")).map((row) => row.map(Math.fround));
-  const found = () =>
-    [0, 1, 2].map((i) => {
-      const [{ mass2, gravity }, state] = [batch.paramsOf(i), batch.state(i)];
-      return [mass2, gravity, state.theta1, state.theta2, state.dtheta1, state.dtheta2];
-    });
-  assert.deepEqual(found(), drawn);
-  batch.reset(42);
-  assert.deepEqual(found(), drawn);
+test("resets draw as NumPy does, after the initial state, alone and in a batch", () => {
+  const draws = {
+    mass2: [0.8, 1.2],
+    inertia1: { logUniform: [0.5, 2] },
+    inertia2: "asBefore",
+    gravity: { normal: [9.8, 0.1, 9.5, 10.1] },
+  };
+  const batch = new Batch({ seed: 42, count: 3, draws });
+  const file = new URL("../../../tests/data/draws.csv", import.meta.url);
+  const rows = readFileSync(file, "utf8").trimEnd().split("\n").slice(1);
+  const found = ({ mass2, inertia1, inertia2, gravity }, state) =>
+    [mass2, inertia1, inertia2, gravity, ...Object.values(state)];
+  for (const row of rows) {
+    const [seed, child, ...drawn] = row.split(",");
+    const expected = drawn.map((number) => Math.fround(number));
+    const acrobot = new Acrobot({ seed: Number(seed), draws });
+    for (const reset of [() => {}, () => (batch.reset(42), acrobot.reset(Number(seed)))]) {
+      reset();
+      const { params, state } = acrobot;
+      const inBatch = () => found(batch.paramsOf(Number(child)), batch.stateOf(Number(child)));
+      assert.deepEqual(child ? inBatch() : found(params, state), expected);
+    }
+  }
+  assert.equal(rows.length, 13);
   batch.setParamsOf(1, { mass1: 3 });
   batch.resetMasked([0, 1, 0], 7);
-  assert.equal(batch.paramsOf(1).mass1, 3);
-  assert.equal(batch.paramsOf(0).mass1, 1);
+  assert.deepEqual([0, 1].map((i) => batch.paramsOf(i).mass1), [1, 3]);
+});
+
+test("draws and parameters are checked together, and a restored acrobot draws nothing", () => {
+  const acrobot = new Acrobot({ seed: 1, draws: { inertia1: [0, 1] } });
+  const message = /^inertia1 must be above 0 if the centre of mass is on the joint, .*, got 0$/;
+  assert.throws(() => acrobot.setParams({ centerOfMass1: 0 }), { message });
+  assert.equal(acrobot.params.centerOfMass1, 0.5);
+  acrobot.reset();
+  const { inertia1 } = acrobot.params;
+  assert.notEqual(inertia1, 1);
+  acrobot.restore(acrobot.snapshot());
+  acrobot.reset();
+  assert.equal(acrobot.params.inertia1, inertia1);
 });
 
 test("acrobots of a batch can have other states", () => {
@@ -127,16 +154,16 @@ test("acrobots of a batch can have other states", () => {
   const state = { theta1: 1, theta2: -2, dtheta1: 3, dtheta2: -4 };
   batch.step(all(0));
   others.forEach((other) => other.step(0));
-  batch.setState(5, state);
+  batch.setStateOf(5, state);
   others[5].state = state;
   assert.deepEqual(row(batch.observations, 5), others[5].observation);
-  assert.equal(batch.elapsed(5), 1);
+  assert.equal(batch.elapsedStepsOf(5), 1);
   const { observations } = batch.step(all(2));
   for (let i = 1; i < COUNT; i++) {
     assert.deepEqual(row(observations, i), others[i].step(2).observation);
   }
   const { states } = batch;
-  assert.deepEqual([...states.slice(20, 24)], Object.values(batch.state(5)));
+  assert.deepEqual([...states.slice(20, 24)], Object.values(batch.stateOf(5)));
   states.set([0.5, -0.5, 1, -1], 4 * 7);
   batch.setStates(states);
   others[7].state = { theta1: 0.5, theta2: -0.5, dtheta1: 1, dtheta2: -1 };
@@ -161,7 +188,7 @@ test("a batch's snapshot continues with the same bits", () => {
       delete results.finalObservations;
       delete expected.finalObservations;
       assert.deepEqual(results, expected);
-      assert.deepEqual(resumed.elapsed(9), batch.elapsed(9));
+      assert.deepEqual(resumed.elapsedStepsOf(9), batch.elapsedStepsOf(9));
     }
   }
 });
@@ -189,7 +216,7 @@ test("acrobots with own parameters have the bits of acrobots alone, also after a
   batch.setParamsOf(COUNT - 1, { centerOfMass1: 0 });
   const before = params();
   for (const [call, message] of [
-    [() => batch.setParams({ inertia1: 0 }), /^RangeError: inertia1 must be above 0 kg m²/],
+    [() => batch.setParams({ inertia1: 0 }), /^RangeError: inertia1 must be above 0 if/],
     [() => batch.setParamsOf(3, { mass1: -1 }), /^RangeError: mass1 must be finite .*, got -1$/],
     [() => batch.setParamsOf(COUNT, { mass1: 1 }), /index must be/],
     [() => new Batch({ ...OPTIONS, ownParams: 1 }), /^TypeError: ownParams must be .*, got 1$/],
@@ -199,42 +226,27 @@ test("acrobots with own parameters have the bits of acrobots alone, also after a
   }
 });
 
-test('with "Disabled" a snapshot is that of Rust, then `ended`, each with a checksum', () => {
-  const batch = new Batch({ ...OPTIONS, autoreset: "Disabled" });
-  const other = new Batch(OPTIONS);
-  const rust = Buffer.from(other.snapshot().subarray(0, -4));
-  assert.equal(rust[41], 0);
-  rust[41] = 2; // the mode
-  const ended = (flag) => sealed(Buffer.concat([sealed(rust), Buffer.alloc(COUNT, flag)]));
-  assert.deepEqual(Buffer.from(batch.snapshot()), ended(0));
-  // One of Rust does not have `ended`.
-  for (const wrong of [sealed(rust), ended(2)]) {
-    assert.throws(() => Batch.restore(wrong), /^RangeError: the snapshot must be a valid one/);
-  }
-});
-
 test("a batch's snapshot has the bytes of Rust's postcard, and any other is rejected", () => {
-  // What version 3 stored for two acrobots with own parameters from a range: here both have those
-  // of the first.
-  const stored = new URL("../../../tests/data/snapshots_3.txt", import.meta.url);
+  // What version 4 stored for two acrobots with own parameters, draws and other bounds.
+  const stored = new URL("../../../tests/data/snapshots_4.txt", import.meta.url);
   const [line] = /^03056261746368.*$/m.exec(readFileSync(stored, "utf8"));
-  const rust = Buffer.from(line, "hex");
-  const bounds = Buffer.from(Float64Array.of(-0.1, 0.1).buffer);
-  const header = [rust.subarray(0, 24), bounds, rust.subarray(40, 42), Buffer.of(0, 0)];
-  const members = [rust.subarray(190, 324), rust.subarray(190, 263), rust.subarray(397)];
-  const content = Buffer.concat([...header, ...members]);
+  const content = Buffer.from(line, "hex");
   const snapshot = sealed(content);
   const batch = Batch.restore(snapshot);
   const task = "acrobot";
-  const settings = { count: 2, maxSteps: 30, autoreset: "NextStep", ownParams: false, task };
+  const settings = { count: 2, maxSteps: 30, autoreset: "NextStep", ownParams: true, task };
   assert.deepEqual(batch.settings, settings);
   assert.deepEqual(Buffer.from(batch.snapshot()), snapshot);
-  assert.notDeepEqual(batch.state(0), batch.state(1));
+  assert.notDeepEqual(batch.stateOf(0), batch.stateOf(1));
+  const { mass2 } = batch.paramsOf(0);
+  batch.reset();
+  assert.notEqual(batch.paramsOf(0).mass2, mass2);
 
   const restores = (bytes) => {
     try {
       const batch = Batch.restore(bytes);
       batch.step(Uint8Array.of(2, 2));
+      batch.free();
       return true;
     } catch ({ name, message }) {
       assert.match(`${name}: ${message}`, /^(RangeError|TypeError): the snapshot must /);
@@ -252,13 +264,14 @@ test("a batch's snapshot has the bytes of Rust's postcard, and any other is reje
   for (let byte = 0; byte < content.length; byte++) {
     for (const value of [0, 127, 128, 255]) {
       const restored = restores(changed(snapshot, byte, value));
-      // The settings before the limit of steps have only one value.
-      if (byte < 40) assert.equal(restored, value === content[byte]);
+      // The number of acrobots and the header have only one value.
+      if (byte < 24) assert.equal(restored, value === content[byte]);
     }
   }
-  // A NaN in the state of acrobot 0.
-  assert.ok(!restores(changed(snapshot, 117, 0, 0, 0xc0, 0x7f)));
-  const message = /^the snapshot must be a valid one of "acrobot", .*, got 300 bytes$/;
+  // More acrobots than memory has room for, and a NaN in the last state.
+  assert.ok(!restores(sealed(Buffer.concat([Buffer.from("ffffffff0f", "hex"), content.subarray(1)]))));
+  assert.ok(restores(sealed(content)));
+  const message = /^the snapshot must be a valid one of "acrobot", .*, got 304 other bytes$/;
   assert.throws(() => acrobot.restore(sealed(Buffer.alloc(300))), { message });
 });
 
@@ -294,26 +307,26 @@ test("invalid arguments are rejected, and nothing changes", () => {
     ["RangeError", "mask[1] must be true, false, 1 or 0", ["2", reset([1, 2, 1])]],
     ["RangeError", SEED, ["-1", reset([1, 1, 1], -1)]],
     ["RangeError", "theta2 must be a finite number of rad",
-      ["NaN", () => batch.setState(0, wrong)]],
+      ["NaN", () => batch.setStateOf(0, wrong)]],
     ["RangeError", "index must be an integer from 0 to 2",
-      ["3", () => batch.setState(3, {})],
-      ["3", () => batch.state(3)],
-      ["-1", () => batch.elapsed(-1)]],
-    ["TypeError", "index must be an integer from 0 to 2", ['"0"', () => batch.state("0")]],
+      ["3", () => batch.setStateOf(3, {})],
+      ["3", () => batch.stateOf(3)],
+      ["-1", () => batch.elapsedStepsOf(-1)]],
+    ["TypeError", "index must be an integer from 0 to 2", ['"0"', () => batch.stateOf("0")]],
     ["RangeError", "dt must be finite and above 0 s",
       ["NaN", () => batch.setParams({ dt: NaN })],
       ["NaN", make({ count: 1, params: { dt: NaN } })]],
     ["RangeError", "ownParams must be true for parameters of each acrobot",
       ["false", () => batch.setParamsOf(0, { mass1: 2 })],
-      ["false", () => batch.setParamsRange({})],
-      ["false", make({ count: 1, paramsRange: {}, ownParams: false })]],
+      ["false", () => batch.setDraws({ mass1: [1, 2] })],
+      ["false", make({ count: 1, draws: { mass1: [1, 2] }, ownParams: false })]],
     ["TypeError", "options must be a plain object",
       ["undefined", make()], ["[object Date]", make(new Date())]],
     ["TypeError", COUNTS, ["undefined", make({})]],
     ["RangeError", COUNTS, ["0", make({ count: 0 })]],
     ["RangeError", "acrobots must fit into WebAssembly's memory of at most 4 GiB",
       ["200000000 more", make({ count: 2e8 })], ["4294967295 more", make({ count: 2 ** 32 - 1 })]],
-    ["TypeError", "autoreset must be NextStep, SameStep, Disabled",
+    ["TypeError", 'autoreset must be "NextStep" or "SameStep" or "Disabled"',
       ['"nextStep"', make({ count: 1, autoreset: "nextStep" })]],
   ];
   assertRejected(rows, () => {
@@ -326,7 +339,7 @@ test("invalid arguments are rejected, and nothing changes", () => {
     torque([0, 0, 0]),
     () => batch.setStates(new Float32Array(12)),
     reset([1, 1, 1]),
-    ...["reset", "state", "elapsed", "snapshot"].map((name) => () => batch[name](0)),
+    ...["reset", "stateOf", "elapsedStepsOf", "snapshot"].map((name) => () => batch[name](0)),
     ...["observations", "params", "states"].map((name) => () => batch[name]),
   ]) {
     assert.throws(use, { name: "Error", message: "the batch has been freed" });

@@ -19,7 +19,7 @@ function play(policy, options) {
   const acrobot = new Acrobot(options);
   for (;;) {
     const { terminated, truncated } = acrobot.step(policy(acrobot));
-    if (terminated || truncated) return terminated ? acrobot.elapsed : Infinity;
+    if (terminated || truncated) return terminated ? acrobot.elapsedSteps : Infinity;
   }
 }
 

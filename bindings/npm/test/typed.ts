@@ -17,9 +17,10 @@ acrobot.setParams({ gravity: params.gravity / 2 });
 const bytes: Uint8Array = acrobot.snapshot();
 const resumed: Acrobot = Acrobot.restore(bytes);
 resumed.restore(bytes);
-const numbers: number[] = [acrobot.energy, acrobot.tipHeight, acrobot.elapsed, acrobot.maxSteps];
+const steps: number[] = [acrobot.elapsedSteps, acrobot.maxSteps];
+const numbers: number[] = [acrobot.energy, acrobot.tipHeight, ...steps];
 
-using swingup = new Acrobot({ task: "swingup", paramsRange: { mass2: [0.8, 1.2] } });
+using swingup = new Acrobot({ task: "swingup", draws: { mass2: [0.8, 1.2] } });
 const task: Task = swingup.task;
 numbers.push(swingup.stepTorque(-0.5).reward, acrobot.sample(42n));
 
@@ -27,18 +28,23 @@ const batch = new Batch({ ...options, count: 3, autoreset: "SameStep" });
 const results: BatchStep = batch.step(Uint8Array.of(0, 1, 2));
 batch.step([0, 1, 2]);
 const finals: Float32Array | undefined = results.finalObservations;
-const second: State = batch.state(1);
+const second: State = batch.stateOf(1);
 
 const learner = new Learner({ episodes: 100, seed: 42n });
 learner.load(learner.save());
 const actions: Action[] = [bangBang(acrobot), energyLaw(acrobot), learner.act(acrobot)];
-numbers.push(learner.train(), uprightEnergy(acrobot.params), batch.elapsed(1));
+numbers.push(learner.train(), uprightEnergy(acrobot.params), batch.elapsedStepsOf(1));
 batch.resetMasked(results.ended);
 batch.resetMasked([true, false, true], 7);
 batch.step(batch.sample());
-batch.setState(0, acrobot.state);
+batch.setStateOf(0, acrobot.state);
 batch.setStates(batch.states);
-batch.setParamsRange({ friction1: [0, 0.1] });
+batch.setDraws({
+  friction1: [0, 0.1],
+  torques: ["fixed", "fixed", { normal: [1, 0.1, 0.5, 1.5] }],
+  inertia1: { logUniform: [0.5, 2] },
+  inertia2: "asBefore",
+});
 batch.stepTorque(new Float32Array(3));
 const copied: Batch = Batch.restore(batch.snapshot());
 const mode: "NextStep" | "SameStep" | "Disabled" = copied.settings.autoreset;
@@ -56,7 +62,9 @@ acrobot.step(3);
 // @ts-expect-error
 acrobot.step("1");
 // @ts-expect-error
-acrobot.setParamsRange({ dynamics: ["book", "nips"] });
+acrobot.setDraws({ dynamics: ["book", "nips"] });
+// @ts-expect-error
+acrobot.setDraws({ mass1: [1, 2, 3] });
 // @ts-expect-error
 new Acrobot({ task: "swing-up" });
 // @ts-expect-error

@@ -17,7 +17,7 @@ import { Learner, bangBang } from "acrobot-rs/policies";
 const acrobot = new Acrobot({ seed: 42 });
 while (!acrobot.step(bangBang(acrobot)).terminated);
 const { rewards } = new Batch({ count: 1 }).step([2]);
-console.log(acrobot.elapsed, rewards[0], [Acrobot, Batch, Learner].map(({ name }) => name).join());
+console.log(acrobot.elapsedSteps, rewards[0], [Acrobot, Batch, Learner].map(({ name }) => name).join());
 `;
 const PRINTED = "94 -1 Acrobot,Batch,Learner\n";
 const input = resolve("program.mjs");
