@@ -132,6 +132,7 @@ export class Batch extends Kept {
   }
 
   reset(seed) {
+    addressOf(this);
     return this.#reset(undefined, seed);
   }
 

@@ -156,6 +156,7 @@ pub extern "C" fn batch_reset(many: &mut Many, words: usize, masked: bool) {
     for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
         *ended &= !reset;
     }
+    many.note_torques(false);
 }
 
 #[unsafe(no_mangle)]
@@ -175,8 +176,12 @@ pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
 }
 
 impl Many {
-    /// Notes the torques of the actions: of all acrobots, or of those that a reset has changed.
+    /// Notes the torques of the actions: of all acrobots, or of those that were just reset, which
+    /// may draw them.
     fn note_torques(&mut self, all: bool) {
+        if !all && !self.own_params {
+            return;
+        }
         with_task!(&self.batch, batch => {
             for (index, torques) in self.torques_of.iter_mut().enumerate() {
                 if all || batch.elapsed_steps_of(index) == Some(0) {
@@ -191,9 +196,6 @@ impl Many {
     fn act(&mut self) -> bool {
         if self.actions.iter().any(|action| *action > 2) {
             return false;
-        }
-        if self.own_params {
-            self.note_torques(false);
         }
         let torques = self.torques.iter_mut().zip(&self.actions);
         match *self.torques_of {
@@ -262,6 +264,7 @@ pub extern "C" fn batch_step(many: &mut Many, given_torques: bool) -> bool {
         for (ended, (terminated, truncated)) in many.ended.iter_mut().zip(flags) {
             *ended = (*ended & lasting) | terminated | truncated;
         }
+        many.note_torques(false);
     }
     stepped
 }
