@@ -16,11 +16,11 @@ for (const file of ["package/package.json", "../../LICENSE-APACHE", "../../LICEN
   cpSync(file, `dist/${basename(file)}`, { dereference: true });
 }
 for (const entry of ["index", "policies"]) {
-  const types = readFileSync(`package/${entry}.d.ts`, "utf8");
-  writeFileSync(`dist/${entry}.d.ts`, types);
-  // For CommonJS: a file that loads the same module, and its types.
+  // For CommonJS: a file that loads the same module, and the types, which ES modules can import.
   writeFileSync(`dist/${entry}.cjs`, `module.exports = require("./${entry}.js");\n`);
+  const types = readFileSync(`package/${entry}.d.ts`, "utf8");
   writeFileSync(`dist/${entry}.d.cts`, types.replace('"./index.js"', '"./index.cjs"'));
+  writeFileSync(`dist/${entry}.d.ts`, `export * from "./${entry}.cjs";\n`);
 }
 bundle("dist");
 execFileSync("npm", ["pack", "--silent", "./dist"], { stdio: "inherit" });

@@ -69,10 +69,24 @@ export interface Params {
   friction2: number;
 }
 
-/** The lowest and the highest value of each parameter that a reset draws. */
-export type ParamsRange = {
-  readonly [Name in Exclude<keyof Params, "torques" | "dynamics">]?: readonly [number, number];
-};
+/**
+ * How a reset draws a number, in the parameter's unit: uniformly from [low, high], with its
+ * logarithm uniform, with a low above 0, or from a normal distribution that is truncated at the
+ * bounds, by [mean, standard deviation, low, high]. Equal bounds draw nothing. "asBefore" is the
+ * number of the parameter before it in `Params`: `inertia2` is `inertia1`.
+ */
+export type Draw =
+  | readonly [low: number, high: number]
+  | { readonly uniform: readonly [low: number, high: number] }
+  | { readonly logUniform: readonly [low: number, high: number] }
+  | { readonly normal: readonly [mean: number, std: number, low: number, high: number] }
+  | "asBefore"
+  | "fixed";
+
+/** What a reset draws of the parameters, in their order. Others, and "fixed" ones, stay. */
+export type Draws = {
+  readonly [Name in Exclude<keyof Params, "torques" | "dynamics">]?: Draw;
+} & { readonly torques?: readonly [Draw, Draw, Draw] };
 
 /**
  * Gymnasium's task, or dm_control's `acrobot-swingup`: from rest anywhere to upright, and no state
@@ -90,8 +104,8 @@ export interface Options {
   maxSteps?: number;
   /** Default: "acrobot". */
   task?: Task;
-  /** As `setParamsRange`. Default: none. */
-  paramsRange?: ParamsRange;
+  /** As `setDraws`. Default: none. */
+  draws?: Draws;
 }
 
 export interface Step {
@@ -143,10 +157,11 @@ declare abstract class Kept {
   /** Changes some parameters for the next steps, or throws if one is outside its range. */
   setParams(changes: Readonly<Partial<Params>>): void;
   /**
-   * From now on each reset draws these parameters uniformly, after the initial state: a batch draws
-   * for each acrobot, and needs `ownParams`. `{}` ends it. Snapshots do not have the range.
+   * From now on each reset draws these parameters after the initial state, from the same random
+   * numbers: a batch draws for each acrobot, and needs `ownParams`. `{}` ends it. Throws if a draw
+   * could be outside the parameter's range.
    */
-  setParamsRange(range: ParamsRange): void;
+  setDraws(draws: Draws): void;
   /** Frees the memory in WebAssembly now, and not when the garbage collector does. */
   free(): void;
   /** Calls `free()`: for `using`. */
@@ -182,11 +197,14 @@ export class Acrobot extends Kept {
   /** The height of the tip above the fixed joint, m. */
   get tipHeight(): number;
   /** The number of steps since the last reset. */
-  get elapsed(): number;
+  get elapsedSteps(): number;
   get maxSteps(): number;
-  /** About 150 bytes: Rust's `TimeLimit<Acrobot<Fast>>` in postcard with CRC-32. */
+  /** About 160 bytes, without draws: Rust's `TimeLimit<Acrobot<Fast>>` in postcard with CRC-32. */
   snapshot(): Uint8Array;
-  /** Continues from a snapshot, or throws if it is damaged or of another version. */
+  /**
+   * Continues from a snapshot, and draws no parameters until `setDraws`. Throws if it is damaged or
+   * of another version or task.
+   */
   restore(snapshot: Uint8Array): void;
   /** Draws the acrobot, with an arrow for the torque of the last step. */
   draw(context: Context, options?: DrawOptions): void;
@@ -197,7 +215,7 @@ export interface BatchOptions extends Options {
   count: number;
   /** When an ended acrobot is reset: Gymnasium's `AutoresetMode`. Default: "NextStep". */
   autoreset?: "NextStep" | "SameStep" | "Disabled";
-  /** Whether each acrobot has its own parameters, for `setParamsOf`. Default: for `paramsRange`. */
+  /** Whether each acrobot has its own parameters, for `setParamsOf`. Default: for `draws`. */
   ownParams?: boolean;
 }
 
@@ -229,8 +247,8 @@ export class Batch extends Kept {
   /** As `Acrobot.restore`. */
   static restore(snapshot: Uint8Array): Batch;
   get count(): number;
-  get settings(): Readonly<Required<Omit<BatchOptions, "seed" | "params" | "paramsRange">>>;
-  /** The array that steps and resets overwrite, as does reading it after `setState`. */
+  get settings(): Readonly<Required<Omit<BatchOptions, "seed" | "params" | "draws">>>;
+  /** The array that steps and resets overwrite, as does reading it after `setStateOf`. */
   get observations(): Float32Array;
   /** Begins an episode of each acrobot. Returns `observations`. */
   reset(seed?: Seed): Float32Array;
@@ -247,22 +265,21 @@ export class Batch extends Kept {
   sample(seed?: Seed): Uint8Array;
   /** The states, a row of four numbers for each acrobot: a new array. */
   get states(): Float32Array;
-  /** As `setState`, for all: rows as in `states`. */
+  /** As `setStateOf`, for all: rows as in `states`. */
   setStates(states: ArrayLike<number>): void;
   /** The state of an acrobot: a frozen copy. */
-  state(index: number): Readonly<State>;
+  stateOf(index: number): Readonly<State>;
   /** As `Acrobot.state`. With "NextStep", the next step still resets an ended acrobot. */
-  setState(index: number, state: Readonly<State>): void;
+  setStateOf(index: number, state: Readonly<State>): void;
   /** The number of steps since an acrobot's last reset. */
-  elapsed(index: number): number;
+  elapsedStepsOf(index: number): number;
   /** The parameters of an acrobot. `params` has those of the first. */
   paramsOf(index: number): Readonly<Params>;
   /** Changes parameters of one acrobot, if the batch has `ownParams`. `setParams` changes all. */
   setParamsOf(index: number, changes: Readonly<Partial<Params>>): void;
   /**
-   * About 140 bytes for each acrobot: Rust's `VecBatch<Fast>` in postcard with CRC-32, and with
-   * "Disabled" `ended` and another CRC-32. A batch from Rust with "Disabled", a range of parameters
-   * or other reset bounds cannot be restored.
+   * About 150 bytes for each acrobot, and 60 to 400 for the settings and draws: Rust's
+   * `VecBatch<Fast>` in postcard with CRC-32.
    */
   snapshot(): Uint8Array;
   /** Draws an acrobot, without an arrow. */

@@ -18,12 +18,8 @@ use crate::{Tasks, with_task};
 const LANES: usize = 4;
 
 /// Vectors for parameters of each acrobot, too, or for none. Compiling both takes 13 KB.
-type Memory<A> = (
-    Vec<Block<A, LANES>>,
-    Vec<Pcg64>,
-    Vec<LaneParams<A, LANES>>,
-    Draws<<A as Arithmetic>::Scalar>,
-);
+type Memory<A> =
+    (Vec<Block<A, LANES>>, Vec<Pcg64>, Vec<LaneParams<A, LANES>>, Draws<<A as Arithmetic>::Scalar>);
 
 type Acrobots<A, T> = Batch<A, Memory<A>, T, LANES>;
 

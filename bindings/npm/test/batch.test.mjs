@@ -268,9 +268,9 @@ test("a batch's snapshot has the bytes of Rust's postcard, and any other is reje
       if (byte < 24) assert.equal(restored, value === content[byte]);
     }
   }
-  // More acrobots than memory has room for, and a NaN in the last state.
-  assert.ok(!restores(sealed(Buffer.concat([Buffer.from("ffffffff0f", "hex"), content.subarray(1)]))));
-  assert.ok(restores(sealed(content)));
+  // More acrobots than there is memory for.
+  const most = Buffer.from("ffffffff0f", "hex");
+  assert.ok(!restores(sealed(Buffer.concat([most, content.subarray(1)]))));
   const message = /^the snapshot must be a valid one of "acrobot", .*, got 304 other bytes$/;
   assert.throws(() => acrobot.restore(sealed(Buffer.alloc(300))), { message });
 });

@@ -52,8 +52,10 @@ const CALLS = {
 };
 
 test("what Rust rejects is rejected with the same message, and nothing changes", () => {
+  // The task with friction.
   const options = { seed: 42, task: "swingup" };
-  const [acrobot, batch] = [new Acrobot(options), new Batch({ ...options, count: 2, ownParams: true })];
+  const acrobot = new Acrobot(options);
+  const batch = new Batch({ ...options, count: 2, ownParams: true });
   const snapshots = () => [acrobot.snapshot(), batch.snapshot()];
   const before = snapshots();
   const rows = readFileSync(path, "utf8").trimEnd().split("\n").map((line) => JSON.parse(line));
