@@ -36,6 +36,8 @@ pub struct Many {
     torques: Vec<f32>,
     /// The torques of the actions of each acrobot, or of all.
     torques_of: Vec<[f32; 3]>,
+    /// Whether resets draw them.
+    draws_torques: bool,
     /// JavaScript writes here before a reset.
     mask: Vec<bool>,
     observations: Vec<[f32; 6]>,
@@ -70,6 +72,7 @@ impl Many {
                 actions: zeros(count)?,
                 torques: zeros(count)?,
                 torques_of: zeros(if own_params { count } else { 1 })?,
+                draws_torques: false,
                 mask: zeros(count)?,
                 observations: zeros(count)?,
                 rewards: zeros(count)?,
@@ -172,10 +175,9 @@ pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
 }
 
 impl Many {
-    /// Notes the torques of the actions: of all acrobots, or of those that were just reset, which
-    /// may draw them.
+    /// Notes the torques of the actions: of all acrobots, or of those that a reset has drawn.
     fn note_torques(&mut self, all: bool) {
-        if !all && !self.own_params {
+        if !all && !self.draws_torques {
             return;
         }
         with_task!(&self.batch, batch => {
@@ -237,7 +239,10 @@ impl Many {
 
     fn set_draws(&mut self) -> Result<(), Error> {
         let draws = memory::get_draws()?;
-        with_task!(&mut self.batch, batch => batch.set_draws(draws))
+        with_task!(&mut self.batch, batch => batch.set_draws(draws))?;
+        self.draws_torques =
+            !matches!(draws.params().torques, [Draw::Fixed, Draw::Fixed, Draw::Fixed]);
+        Ok(())
     }
 }
 
@@ -372,6 +377,7 @@ fn load(content: &[u8]) -> Option<Many> {
         batch.set_max_steps(max_steps);
         batch.set_autoreset(autoreset);
     });
+    many.draws_torques = !matches!(draws.torques, [Draw::Fixed, Draw::Fixed, Draw::Fixed]);
     many.note_torques(true);
     reader.finalize().ok()?.is_empty().then_some(many)
 }
