@@ -17,7 +17,7 @@ const run = (command, args, env) =>
  * A loop is unrolled fully or not at all, and only up to 3 iterations: loops over the 4 lanes of a
  * batch's block become vectors instead. Fewer functions are inlined.
  */
-const SMALL = ["-unroll-full-max-count=3", "-unroll-allow-partial=false", "-inline-threshold=30"];
+const SMALL = ["-unroll-full-max-count=3", "-unroll-allow-partial=false", "-inline-threshold=10"];
 /**
  * wasm-opt's passes for smaller code. `--const-hoisting` turns constants that occur often into
  * locals. `--low-memory-unused` is safe because Rust puts nothing below address 1024.

@@ -189,7 +189,7 @@ impl Many {
         });
     }
 
-    /// Makes torques of the actions: steps of actions, too, would take 21 KB. Returns false if an
+    /// Makes torques of the actions: steps of actions, too, would take 17 KB. Returns false if an
     /// action is above 2.
     fn act(&mut self) -> bool {
         if self.actions.iter().any(|action| *action > 2) {

@@ -193,6 +193,15 @@ test("a batch's snapshot continues with the same bits", () => {
   }
 });
 
+test('with "Disabled" a snapshot has which episodes have ended', () => {
+  const batch = new Batch({ seed: 1, count: 2, autoreset: "Disabled" });
+  const { states } = batch;
+  batch.setStateOf(1, { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 });
+  batch.step([1, 1]);
+  batch.setStates(states);
+  assert.deepEqual([...Batch.restore(batch.snapshot()).step([1, 1]).ended], [0, 1]);
+});
+
 test("acrobots with own parameters have the bits of acrobots alone, also after a snapshot", () => {
   const batch = new Batch({ ...OPTIONS, ownParams: true });
   const others = alone(OPTIONS);
