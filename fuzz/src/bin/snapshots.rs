@@ -10,7 +10,7 @@ use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
-use acrobot::task::{Gymnasium, Draw, Draws};
+use acrobot::task::{Draw, Draws, Gymnasium};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 use serde::Serialize;
