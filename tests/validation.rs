@@ -21,6 +21,7 @@ fn errors_name_the_value_and_the_rule() {
     fn seed(text: &str) -> Result<(), Error> {
         text.parse::<SeedSequence>().map(drop)
     }
+    let gravity = Draw::Uniform { low: f64::MIN, high: f64::MAX };
     let mut members = batch::<35>().unwrap();
     let mut messages = Vec::new();
     for (result, message) in [
@@ -34,6 +35,10 @@ fn errors_name_the_value_and_the_rule() {
             ResetBounds::new(-0.1, 1e39).map(drop),
             "high must be from -3.4e38 to 3.4e38 rad and rad/s, \
                 got 1000000000000000000000000000000000000000",
+        ),
+        (
+            Draws::new(Params { gravity, ..Draws::FIXED }).map(drop),
+            "gravity must be drawn from a range of finite width in m/s², got inf",
         ),
         (batch::<0>().map(drop), "a batch must have at least 1 acrobot, got 0 generators"),
         (batch::<17>().map(drop), "blocks must have 2 elements, got 3"),
