@@ -189,6 +189,11 @@ fn draws_of_parameters_are_within_their_range() {
     for (found, expected) in sums.into_iter().zip([0.0, 1.0, 0.0, 1.0 / 3.0]) {
         assert!((found - expected).abs() < 0.05, "{sums:?}");
     }
+    // Bounds beyond 8 standard deviations, as draws.py computes it with NumPy.
+    let mass1 = Draw::Normal { mean: 1.0, std: 0.01, low: 0.5, high: 2.0 };
+    let draws = Draws::new(Params { mass1, ..Draws::FIXED }).unwrap();
+    let drawn = draws.draw(&Params::<f64>::DEFAULT, &mut Pcg64::new(42));
+    assert_eq!(drawn.mass1, 0.990946271812373);
     let mass1 = Draw::Normal { mean: 1.0, std: 0.1, low: 0.5, high: 2.0 };
     let normal = Draws::<f32>::new(Params { mass1, ..Draws::FIXED }).unwrap();
     assert_eq!(normal.draw(&params, &mut Repeating::new([u64::MAX])).mass1, 1.0);
