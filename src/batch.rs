@@ -23,6 +23,7 @@ mod buffers;
 mod inputs;
 mod lane_params;
 mod member;
+mod params;
 mod reset;
 mod settings;
 mod simd;
@@ -49,8 +50,8 @@ pub use vec_batch::{StepResults, VecBatch};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::physics::{Params, State, check_params, default_model, model};
-use crate::task::{Draws, Gymnasium, Of, ResetBounds, Task};
+use crate::physics::{State, default_model, model};
+use crate::task::{Gymnasium, Of, ResetBounds, Task};
 use buffers::{check_length, take_mut};
 use lane_params::Own;
 use settings::{Parameters, Settings};
@@ -166,8 +167,8 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         Ok(())
     }
 
-    /// As [`step_into`](Self::step_into), with its errors, on all cores with rayon. The number of threads
-    /// changes no bit.
+    /// As [`step_into`](Self::step_into), with its errors, on all cores with rayon. The number of
+    /// threads changes no bit.
     #[cfg(feature = "rayon")]
     pub fn par_step_into<I: Input<A::Scalar>>(
         &mut self,
@@ -228,7 +229,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// Whether the episode of acrobot `index`, if there is one, has ended and it waits for a reset:
     /// by the next step or, with [`Autoreset::Disabled`], by the caller.
     #[must_use]
-    pub fn ended(&self, index: usize) -> Option<bool> {
+    pub fn ended_of(&self, index: usize) -> Option<bool> {
         let (_, ended) = self.block_of(index).ok()?.progress(index % N)?;
         Some(ended)
     }
@@ -257,83 +258,6 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         let (slices, len) = (self.storage.slices(), self.len());
         let block = slices.blocks.get(index / N).filter(|_| index < len);
         block.ok_or(Error::NoSuchIndex { index, len })
-    }
-
-    /// The parameters of acrobot `index`, if there is one.
-    #[must_use]
-    pub fn params_of(&self, index: usize) -> Option<Params<A::Scalar>> {
-        let slices = self.storage.slices();
-        slices.generators.get(index)?;
-        match &self.settings.parameters {
-            Parameters::Shared(model) => Some(model.params),
-            Parameters::Own => Some(slices.lane_params.get(index / N)?.get(index % N)),
-        }
-    }
-
-    /// Whether each acrobot has its own parameters. Otherwise all share theirs.
-    #[must_use]
-    pub fn has_own_params(&self) -> bool {
-        matches!(self.settings.parameters, Parameters::Own)
-    }
-
-    /// Sets the parameters of all acrobots for the next steps, with the errors of
-    /// [`Pendulum::set_params`](crate::physics::Pendulum::set_params).
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
-        self.check_params(&params)?;
-        let model = model::<A>(params);
-        let lane_params = self.storage.slices_mut().lane_params;
-        lane_params.fill(LaneParams::shared(&model));
-        if let Parameters::Shared(shared) = &mut self.settings.parameters {
-            *shared = model;
-        }
-        Ok(())
-    }
-
-    /// Sets the parameters of acrobot `index` for the next steps.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`set_params`](Self::set_params), [`Error::NoSuchIndex`], and
-    /// [`Error::SharedParams`] without memory for [`LaneParams`].
-    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
-        self.check_params(&params)?;
-        self.block_of(index)?;
-        let lane_params = self.storage.slices_mut().lane_params;
-        let own = lane_params.get_mut(index / N).ok_or(Error::SharedParams)?;
-        own.set(index % N, params);
-        Ok(())
-    }
-
-    /// Checks parameters, and what the draws can make of them.
-    fn check_params(&self, params: &Params<A::Scalar>) -> Result<(), Error> {
-        check_params::<A>(params)?;
-        self.draws().check::<A>(params)
-    }
-
-    /// What each reset draws of the parameters.
-    #[must_use]
-    pub fn draws(&self) -> &Draws<A::Scalar> {
-        self.storage.slices().draws.unwrap_or(&Draws::NONE)
-    }
-
-    /// Sets what each reset, also one in a step, draws of the acrobot's parameters after its
-    /// initial state.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`set_params`](Self::set_params), for what the draws can make of the parameters of
-    /// each acrobot, and [`Error::SharedParams`] without memory for [`LaneParams`].
-    pub fn set_draws(&mut self, draws: Draws<A::Scalar>) -> Result<(), Error> {
-        let count = if self.has_own_params() { self.len() } else { 1 };
-        for params in (0..count).filter_map(|index| self.params_of(index)) {
-            draws.check::<A>(&params)?;
-        }
-        match (&self.settings.parameters, self.storage.slices_mut().draws) {
-            (Parameters::Own, Some(own)) => *own = draws,
-            _ if draws == Draws::NONE => {}
-            _ => return Err(Error::SharedParams),
-        }
-        Ok(())
     }
 
     /// The task.

@@ -128,6 +128,7 @@ fn normal<R: Rng + ?Sized>(rng: &mut R, mean: f64, std: f64, low: f64, high: f64
 /// acrobot.draw_params(&draws)?;
 /// let Params { mass2, inertia1, inertia2, length1, .. } = *acrobot.params();
 /// assert!(inertia1 == inertia2 && length1 == 1.0 && (0.8..=1.2).contains(&mass2));
+/// assert_eq!(size_of::<Draws<f32>>(), 364);
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -142,7 +142,7 @@ fn rejected_changes_change_nothing() {
     assert_eq!(rows, [[9.0; 6]; 4]);
     assert_eq!((batch.state_of(3), batch.member(3)), (None, None));
     assert_eq!((batch.params_of(3), batch.elapsed_steps_of(3)), (None, None));
-    assert_eq!((batch.draws(), batch.ended(3)), (&Draws::NONE, None));
+    assert_eq!((batch.draws(), batch.ended_of(3)), (&Draws::NONE, None));
     assert_eq!(members(&batch), members(&twin));
     for batch in [&mut batch, &mut twin] {
         let (mut rewards, mut terminated, mut truncated) = ([0.0; 3], [false; 3], [false; 3]);

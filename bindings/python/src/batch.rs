@@ -217,7 +217,7 @@ impl Batch {
     fn first_ended(slf: &Bound<'_, Self>) -> PyResult<Option<usize>> {
         let this = alone(slf)?;
         Ok(with_batch!(&this.engine, many => {
-            (0..many.batch.len()).find(|&index| many.batch.ended(index) == Some(true))
+            (0..many.batch.len()).find(|&index| many.batch.ended_of(index) == Some(true))
         }))
     }
 

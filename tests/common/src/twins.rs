@@ -146,7 +146,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
             assert_eq!(member.elapsed_steps, alone.elapsed_steps(), "acrobot {i}");
             assert_eq!(self.batch.elapsed_steps_of(i), Some(member.elapsed_steps));
             assert_eq!(member.ended, self.ended[i], "acrobot {i}");
-            assert_eq!(self.batch.ended(i), Some(member.ended));
+            assert_eq!(self.batch.ended_of(i), Some(member.ended));
             assert_eq!(member.rng, *inner.rng(), "acrobot {i}");
             assert_eq!(member.params, *inner.params(), "acrobot {i}");
             assert_eq!(self.batch.params_of(i), Some(member.params));

@@ -1,0 +1,89 @@
+//! The parameters of a batch: those that all acrobots share, or of each, and what resets draw.
+
+use super::Batch;
+use super::lane_params::LaneParams;
+use super::settings::Parameters;
+use super::storage::Storage;
+use crate::arithmetic::Arithmetic;
+use crate::error::Error;
+use crate::physics::{Params, check_params, model};
+use crate::task::{Draws, Task};
+
+impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
+    /// The parameters of acrobot `index`, if there is one.
+    #[must_use]
+    pub fn params_of(&self, index: usize) -> Option<Params<A::Scalar>> {
+        let slices = self.storage.slices();
+        slices.generators.get(index)?;
+        match &self.settings.parameters {
+            Parameters::Shared(model) => Some(model.params),
+            Parameters::Own => Some(slices.lane_params.get(index / N)?.get(index % N)),
+        }
+    }
+
+    /// Whether each acrobot has its own parameters. Otherwise all share theirs.
+    #[must_use]
+    pub fn has_own_params(&self) -> bool {
+        matches!(self.settings.parameters, Parameters::Own)
+    }
+
+    /// Sets the parameters of all acrobots for the next steps, with the errors of
+    /// [`Pendulum::set_params`](crate::physics::Pendulum::set_params).
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        self.check_params(&params)?;
+        let model = model::<A>(params);
+        let lane_params = self.storage.slices_mut().lane_params;
+        lane_params.fill(LaneParams::shared(&model));
+        if let Parameters::Shared(shared) = &mut self.settings.parameters {
+            *shared = model;
+        }
+        Ok(())
+    }
+
+    /// Sets the parameters of acrobot `index` for the next steps.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`set_params`](Self::set_params), [`Error::NoSuchIndex`], and
+    /// [`Error::SharedParams`] without memory for [`LaneParams`].
+    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
+        self.check_params(&params)?;
+        self.block_of(index)?;
+        let lane_params = self.storage.slices_mut().lane_params;
+        let own = lane_params.get_mut(index / N).ok_or(Error::SharedParams)?;
+        own.set(index % N, params);
+        Ok(())
+    }
+
+    /// Checks parameters, and what the draws can make of them.
+    pub(super) fn check_params(&self, params: &Params<A::Scalar>) -> Result<(), Error> {
+        check_params::<A>(params)?;
+        self.draws().check::<A>(params)
+    }
+
+    /// What each reset draws of the parameters.
+    #[must_use]
+    pub fn draws(&self) -> &Draws<A::Scalar> {
+        self.storage.slices().draws.unwrap_or(&Draws::NONE)
+    }
+
+    /// Sets what each reset, also one in a step, draws of the acrobot's parameters after its
+    /// initial state.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`set_params`](Self::set_params), for what the draws can make of the parameters of
+    /// each acrobot, and [`Error::SharedParams`] without memory for [`LaneParams`].
+    pub fn set_draws(&mut self, draws: Draws<A::Scalar>) -> Result<(), Error> {
+        let count = if self.has_own_params() { self.len() } else { 1 };
+        for params in (0..count).filter_map(|index| self.params_of(index)) {
+            draws.check::<A>(&params)?;
+        }
+        match (&self.settings.parameters, self.storage.slices_mut().draws) {
+            (Parameters::Own, Some(own)) => *own = draws,
+            _ if draws == Draws::NONE => {}
+            _ => return Err(Error::SharedParams),
+        }
+        Ok(())
+    }
+}
