@@ -15,12 +15,11 @@ use crate::task::{
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
 
-/// The result of a step. `O` is the type of the observation, `I` that of further information, such
-/// as the `Info` of an `Env`.
+/// The result of a step. `O` is the type of the observation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Step<O = [f32; 6], I = ()> {
+pub struct Step<O = [f32; 6]> {
     /// The observation of the new state.
     pub observation: O,
     /// −1, or 0 if `terminated`; of a swing-up from 0 to 1.
@@ -29,11 +28,9 @@ pub struct Step<O = [f32; 6], I = ()> {
     pub terminated: bool,
     /// Whether a [`TimeLimit`](crate::TimeLimit) ended the episode.
     pub truncated: bool,
-    /// Further information from the environment.
-    pub info: I,
 }
 
-impl<O, I> Step<O, I> {
+impl<O> Step<O> {
     /// Whether the episode is over: `terminated` or `truncated`.
     #[must_use]
     #[inline]
@@ -148,7 +145,7 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
         let (reward, terminated) =
             episode::step::<A, T, A::Scalar>(model, y, sin_cos, torque, &self.task);
         let sin_cos = *sin_cos;
-        Step { observation: self.observe(sin_cos), reward, terminated, truncated: false, info: () }
+        Step { observation: self.observe(sin_cos), reward, terminated, truncated: false }
     }
 
     /// Draws a new initial state from the task's [bounds](Task::RESET_BOUNDS) and returns its

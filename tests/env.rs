@@ -4,8 +4,8 @@ use std::sync::mpsc::{TryRecvError, channel};
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Reference};
 use acrobot::env::{
-    AcrobotEnv, BoxSpace, DiscreteSpace, Display, Env, Error, RecordEpisodeStatistics, RenderMode,
-    Rendering, check_env, make, make_with,
+    AcrobotEnv, BoxSpace, DiscreteSpace, Display, Env, Error, RenderMode, Rendering, make,
+    make_with,
 };
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
@@ -75,7 +75,7 @@ fn live_changes_reach_through_every_wrapper() {
     alone.set_state(far).unwrap();
     let expected = alone.step(Action::Positive).observation;
 
-    let mut changed = RecordEpisodeStatistics::new(make("Acrobot-v1").unwrap());
+    let mut changed = TimeLimit::new(make("Acrobot-v1").unwrap(), Gymnasium::MAX_STEPS);
     changed.unwrapped_mut().set_params(params).unwrap();
     let mut made = make_with::<Host>("Acrobot-v1", params, RenderMode::None).unwrap();
     for env in [&mut changed as &mut dyn Env, &mut made] {
@@ -101,15 +101,12 @@ fn borrowed_and_boxed_environments_are_environments() {
     assert_eq!(format!("{display:?}"), "Display");
     let mode = RenderMode::Human(display);
     let made = make_with::<Fast>("Acrobot-v0", Params::DEFAULT, mode).unwrap();
-    let limited = TimeLimit::new(RecordEpisodeStatistics::new(made), Gymnasium::MAX_STEPS);
-    let mut boxed: Box<dyn Env> = Box::new(limited);
-    let mut env = RecordEpisodeStatistics::new(&mut boxed);
+    let mut boxed: Box<dyn Env> = Box::new(made);
+    let mut env = TimeLimit::new(&mut boxed, Gymnasium::MAX_STEPS);
     let bounds = ResetBounds::new(0.5, 0.5).unwrap();
     assert_eq!(env.reset_with(bounds.into()), [0.5; 4]);
     let length = (1..).find(|_| env.step(Action::Zero).truncated);
     assert_eq!(length, Some(200), "the shorter of two limits");
-    let episodes: Vec<_> = env.episodes().copied().collect();
-    assert!(episodes[0].length == 200 && !episodes[0].elapsed.is_zero());
     assert_eq!(frames.try_iter().count(), 201);
     env.unwrapped_mut().set_state(State::default()).unwrap();
     assert_eq!(env.unwrapped().state(), State::default());
@@ -133,38 +130,12 @@ fn any_acrobot_is_an_environment() {
             assert_eq!((step.reward, step.terminated), (expected.reward, expected.terminated));
         }
         assert_eq!(env.unwrapped().acrobot(), Some(&alone));
-        assert_eq!(check_env(&TimeLimit::new(env, T::MAX_STEPS), 42), Ok(()));
     }
     check::<Host, Gymnasium>();
     check::<Reference, Gymnasium>();
     check::<Portable, GymnasiumV0>();
     check::<Micro, Gymnasium>();
     check::<Damped<Fast>, Swingup>();
-}
-
-#[test]
-fn statistics_cover_each_episode() {
-    let env = AcrobotEnv::new(Acrobot::<Fast>::new(0), RenderMode::None);
-    let mut env = RecordEpisodeStatistics::new(TimeLimit::new(env, 5.try_into().unwrap()));
-    assert_eq!(env.mean_return(), None);
-    for episode in 1..=120 {
-        env.reset();
-        if episode == 120 {
-            env.unwrapped_mut().set_state(State::UPRIGHT).unwrap();
-        }
-        let last = loop {
-            let step = env.step(Action::Zero);
-            assert_eq!(step.info.episode.is_some(), step.done());
-            if let Some(last) = step.info.episode {
-                break last;
-            }
-        };
-        let expected = if episode == 120 { (1, 0.0) } else { (5, -5.0) };
-        assert_eq!((last.length, last.episode_return), expected);
-    }
-    assert_eq!(env.episodes().count(), 100);
-    assert_eq!(env.mean_return(), Some(-99.0 * 5.0 / 100.0));
-    assert_eq!(env.into_inner().elapsed_steps(), 1);
 }
 
 #[test]

@@ -5,7 +5,6 @@ use core::fmt;
 use std::boxed::Box;
 use std::vec::Vec;
 
-use super::info::Info;
 use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
@@ -18,7 +17,7 @@ use crate::task::{ResetOptions, Task};
 pub trait AnyAcrobot: Any + fmt::Debug + Send + Sync {
     fn boxed(&self) -> Box<dyn AnyAcrobot>;
     fn reset_with(&mut self, options: ResetOptions) -> Vec<f32>;
-    fn step(&mut self, action: Action) -> Step<Vec<f32>, Info>;
+    fn step(&mut self, action: Action) -> Step<Vec<f32>>;
     fn observation_high(&self) -> Vec<f32>;
     fn state(&self) -> State;
     fn set_state(&mut self, state: State) -> Result<(), Error>;
@@ -36,10 +35,9 @@ impl<A: Arithmetic, T: Task> AnyAcrobot for Acrobot<A, T> {
         Self::reset_with(self, options).as_ref().into()
     }
 
-    fn step(&mut self, action: Action) -> Step<Vec<f32>, Info> {
-        let Step { observation, reward, terminated, truncated, .. } = Self::step(self, action);
-        let observation = observation.as_ref().into();
-        Step { observation, reward, terminated, truncated, info: Info::default() }
+    fn step(&mut self, action: Action) -> Step<Vec<f32>> {
+        let Step { observation, reward, terminated, truncated } = Self::step(self, action);
+        Step { observation: observation.as_ref().into(), reward, terminated, truncated }
     }
 
     fn observation_high(&self) -> Vec<f32> {
@@ -62,8 +60,7 @@ impl<A: Arithmetic, T: Task> AnyAcrobot for Acrobot<A, T> {
 
     fn set_params(&mut self, params: Params) -> Result<(), Error> {
         check_params::<A>(&params)?;
-        let fields = params.fields().map(|(name, value, ..)| (name, value));
-        Self::set_params(self, params.cast()).map_err(|error| as_given(error, &fields))
+        Self::set_params(self, params.cast()).map_err(|error| as_given(error, &params.numbers()))
     }
 
     fn figure(&self) -> Figure {

@@ -4,7 +4,6 @@ use std::boxed::Box;
 use std::vec::Vec;
 
 use super::Env;
-use super::info::Info;
 use crate::acrobot::Step;
 use crate::action::Action;
 use crate::task::ResetOptions;
@@ -25,7 +24,7 @@ impl<E: Env> Env for TimeLimit<E> {
         self.inner.reset_with(options)
     }
 
-    fn step(&mut self, action: Action) -> Step<Vec<f32>, Info> {
+    fn step(&mut self, action: Action) -> Step<Vec<f32>> {
         let mut step = self.inner.step(action);
         step.truncated |= self.count();
         step

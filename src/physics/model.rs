@@ -177,7 +177,7 @@ for_f32_and_f64! {
 
         impl<G: Given> Of<G> {
             const fn model(form: Form) -> Model<S> {
-                let params = Params::<S>::round(&G::PARAMS);
+                let params = Params::<S>::round(G::PARAMS);
                 let (l1, lc1, lc2) =
                     (params.length1, params.center_of_mass1, params.center_of_mass2);
                 Model::<S>::new(form, params, [l1 * l1, lc1 * lc1, lc2 * lc2])

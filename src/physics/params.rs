@@ -103,7 +103,7 @@ impl<S: Real> Params<S> {
     /// Whether all bits are the same. `==` takes −0 for 0.
     pub(crate) fn same(&self, other: &Self) -> bool {
         let [bits, other_bits] =
-            [self, other].map(|params| params.fields().map(|(_, x, ..)| x.to_f64().to_bits()));
+            [self, other].map(|params| params.numbers().map(|(_, x)| x.to_f64().to_bits()));
         self.dynamics == other.dynamics && bits == other_bits
     }
 }
@@ -112,57 +112,37 @@ impl<S: Copy> Params<S> {
     /// The name and the value of each number, in the order of the fields.
     #[must_use]
     pub fn numbers(&self) -> [(&'static str, S); 18] {
-        self.fields().map(|(name, number, ..)| (name, number))
+        { *self }.fields_mut().map(|(name, number, ..)| (name, *number))
     }
 
     /// Each number, to change it, in the order of the fields.
     pub fn numbers_mut(&mut self) -> [&mut S; 18] {
-        let [negative, zero, positive] = &mut self.torques;
-        [
-            &mut self.length1,
-            &mut self.length2,
-            &mut self.mass1,
-            &mut self.mass2,
-            &mut self.center_of_mass1,
-            &mut self.center_of_mass2,
-            &mut self.inertia1,
-            &mut self.inertia2,
-            &mut self.gravity,
-            &mut self.dt,
-            &mut self.max_velocity1,
-            &mut self.max_velocity2,
-            negative,
-            zero,
-            positive,
-            &mut self.torque_noise,
-            &mut self.friction.joint1,
-            &mut self.friction.joint2,
-        ]
+        self.fields_mut().map(|(_, number, ..)| number)
     }
 
     /// The name, value, unit and range of each number.
-    pub(crate) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 18] {
+    pub(crate) const fn fields_mut(&mut self) -> [(&'static str, &mut S, &'static str, Range); 18] {
         use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
 
-        let [negative, zero, positive] = self.torques;
-        let Viscous { joint1, joint2 } = self.friction;
+        let [negative, zero, positive] = &mut self.torques;
+        let Viscous { joint1, joint2 } = &mut self.friction;
         [
-            ("length1", self.length1, "m", AboveZero),
-            ("length2", self.length2, "m", AboveZero),
-            ("mass1", self.mass1, "kg", AboveZero),
-            ("mass2", self.mass2, "kg", AboveZero),
-            ("center_of_mass1", self.center_of_mass1, "m", AtLeastZero),
-            ("center_of_mass2", self.center_of_mass2, "m", AtLeastZero),
-            ("inertia1", self.inertia1, "kg m²", AtLeastZero),
-            ("inertia2", self.inertia2, "kg m²", AtLeastZero),
-            ("gravity", self.gravity, "m/s²", Finite),
-            ("dt", self.dt, "s", AboveZero),
-            ("max_velocity1", self.max_velocity1, "rad/s", NormalF32),
-            ("max_velocity2", self.max_velocity2, "rad/s", NormalF32),
+            ("length1", &mut self.length1, "m", AboveZero),
+            ("length2", &mut self.length2, "m", AboveZero),
+            ("mass1", &mut self.mass1, "kg", AboveZero),
+            ("mass2", &mut self.mass2, "kg", AboveZero),
+            ("center_of_mass1", &mut self.center_of_mass1, "m", AtLeastZero),
+            ("center_of_mass2", &mut self.center_of_mass2, "m", AtLeastZero),
+            ("inertia1", &mut self.inertia1, "kg m²", AtLeastZero),
+            ("inertia2", &mut self.inertia2, "kg m²", AtLeastZero),
+            ("gravity", &mut self.gravity, "m/s²", Finite),
+            ("dt", &mut self.dt, "s", AboveZero),
+            ("max_velocity1", &mut self.max_velocity1, "rad/s", NormalF32),
+            ("max_velocity2", &mut self.max_velocity2, "rad/s", NormalF32),
             ("torques[0]", negative, "N m", Finite),
             ("torques[1]", zero, "N m", Finite),
             ("torques[2]", positive, "N m", Finite),
-            ("torque_noise", self.torque_noise, "N m", AtLeastZero),
+            ("torque_noise", &mut self.torque_noise, "N m", AtLeastZero),
             ("friction.joint1", joint1, "N m s/rad", AtLeastZero),
             ("friction.joint2", joint2, "N m s/rad", AtLeastZero),
         ]
@@ -205,9 +185,10 @@ for_f32_and_f64! {
     impl Params<S> {
         /// [`Params::validate`], also in a `const`, where neither `?` nor `for` is allowed.
         pub(crate) const fn check(&self) -> Result<(), Error> {
-            let mut fields: &[_] = &self.fields();
+            let mut params = *self;
+            let mut fields: &[_] = &params.fields_mut();
             while let [(name, value, unit, range), rest @ ..] = fields {
-                if let Err(error) = range.check(name, *value as f64, unit) {
+                if let Err(error) = range.check(name, **value as f64, unit) {
                     return Err(error);
                 }
                 fields = rest;
@@ -239,29 +220,15 @@ const fn inertia_of_capsule(radius: f64) -> f64 {
 for_f32_and_f64! {
     impl Params<S> {
         /// [`Params::cast`] in a `const`.
-        pub(super) const fn round(params: &Params) -> Self {
-            let ([negative, zero, positive], friction) = (params.torques, params.friction);
-            Self {
-                length1: params.length1 as S,
-                length2: params.length2 as S,
-                mass1: params.mass1 as S,
-                mass2: params.mass2 as S,
-                center_of_mass1: params.center_of_mass1 as S,
-                center_of_mass2: params.center_of_mass2 as S,
-                inertia1: params.inertia1 as S,
-                inertia2: params.inertia2 as S,
-                gravity: params.gravity as S,
-                dt: params.dt as S,
-                max_velocity1: params.max_velocity1 as S,
-                max_velocity2: params.max_velocity2 as S,
-                torques: [negative as S, zero as S, positive as S],
-                torque_noise: params.torque_noise as S,
-                dynamics: params.dynamics,
-                friction: Viscous {
-                    joint1: friction.joint1 as S,
-                    joint2: friction.joint2 as S,
-                },
+        pub(super) const fn round(mut params: Params) -> Self {
+            let mut rounded = Self { dynamics: params.dynamics, ..Self::ACROBOT };
+            let mut numbers: &mut [_] = &mut rounded.fields_mut();
+            let mut given: &[_] = &params.fields_mut();
+            while let ([(_, number, ..), others @ ..], [(_, x, ..), rest @ ..]) = (numbers, given) {
+                **number = **x as S;
+                (numbers, given) = (others, rest);
             }
+            rounded
         }
 
         /// See [`Params::DEFAULT`].

@@ -167,8 +167,8 @@ impl<S: Real> Draws<S> {
     /// [`LogUniform`](Draw::LogUniform) that begins at 0 or below, and for a
     /// [`Normal`](Draw::Normal) whose mean is not between its bounds or whose standard deviation is
     /// not above 0.
-    pub fn new(params: Params<Draw<S>>) -> Result<Self, Error> {
-        for (name, draw, unit, _) in params.fields() {
+    pub fn new(mut params: Params<Draw<S>>) -> Result<Self, Error> {
+        for (name, draw, unit, _) in params.fields_mut() {
             draw.check(name, unit)?;
         }
         Ok(Self(params))
