@@ -44,6 +44,7 @@ pub use bounds::{saturate, wrap};
 pub use friction::Viscous;
 pub(crate) use geometry::{directions, positions};
 pub(crate) use model::{Defaults, Given, Model, Modeled};
+pub(crate) use params::FIELDS;
 pub use params::{Dynamics, Params};
 pub use pendulum::Pendulum;
 pub(crate) use pendulum::{check_torque, sin_cos};

@@ -108,43 +108,62 @@ impl<S: Real> Params<S> {
     }
 }
 
+/// The name, unit and range of each number.
+pub(crate) const FIELDS: [(&str, &str, Range); 18] = {
+    use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
+    [
+        ("length1", "m", AboveZero),
+        ("length2", "m", AboveZero),
+        ("mass1", "kg", AboveZero),
+        ("mass2", "kg", AboveZero),
+        ("center_of_mass1", "m", AtLeastZero),
+        ("center_of_mass2", "m", AtLeastZero),
+        ("inertia1", "kg m²", AtLeastZero),
+        ("inertia2", "kg m²", AtLeastZero),
+        ("gravity", "m/s²", Finite),
+        ("dt", "s", AboveZero),
+        ("max_velocity1", "rad/s", NormalF32),
+        ("max_velocity2", "rad/s", NormalF32),
+        ("torques[0]", "N m", Finite),
+        ("torques[1]", "N m", Finite),
+        ("torques[2]", "N m", Finite),
+        ("torque_noise", "N m", AtLeastZero),
+        ("friction.joint1", "N m s/rad", AtLeastZero),
+        ("friction.joint2", "N m s/rad", AtLeastZero),
+    ]
+};
+
 impl<S: Copy> Params<S> {
     /// The name and the value of each number, in the order of the fields.
     #[must_use]
     pub fn numbers(&self) -> [(&'static str, S); 18] {
-        { *self }.fields_mut().map(|(name, number, ..)| (name, *number))
+        let mut numbers = *self;
+        let mut names = FIELDS.into_iter();
+        numbers.numbers_mut().map(|number| (names.next().map_or("", |(name, ..)| name), *number))
     }
 
     /// Each number, to change it, in the order of the fields.
-    pub fn numbers_mut(&mut self) -> [&mut S; 18] {
-        self.fields_mut().map(|(_, number, ..)| number)
-    }
-
-    /// The name, value, unit and range of each number.
-    pub(crate) const fn fields_mut(&mut self) -> [(&'static str, &mut S, &'static str, Range); 18] {
-        use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
-
+    pub const fn numbers_mut(&mut self) -> [&mut S; 18] {
         let [negative, zero, positive] = &mut self.torques;
-        let Viscous { joint1, joint2 } = &mut self.friction;
         [
-            ("length1", &mut self.length1, "m", AboveZero),
-            ("length2", &mut self.length2, "m", AboveZero),
-            ("mass1", &mut self.mass1, "kg", AboveZero),
-            ("mass2", &mut self.mass2, "kg", AboveZero),
-            ("center_of_mass1", &mut self.center_of_mass1, "m", AtLeastZero),
-            ("center_of_mass2", &mut self.center_of_mass2, "m", AtLeastZero),
-            ("inertia1", &mut self.inertia1, "kg m²", AtLeastZero),
-            ("inertia2", &mut self.inertia2, "kg m²", AtLeastZero),
-            ("gravity", &mut self.gravity, "m/s²", Finite),
-            ("dt", &mut self.dt, "s", AboveZero),
-            ("max_velocity1", &mut self.max_velocity1, "rad/s", NormalF32),
-            ("max_velocity2", &mut self.max_velocity2, "rad/s", NormalF32),
-            ("torques[0]", negative, "N m", Finite),
-            ("torques[1]", zero, "N m", Finite),
-            ("torques[2]", positive, "N m", Finite),
-            ("torque_noise", &mut self.torque_noise, "N m", AtLeastZero),
-            ("friction.joint1", joint1, "N m s/rad", AtLeastZero),
-            ("friction.joint2", joint2, "N m s/rad", AtLeastZero),
+            &mut self.length1,
+            &mut self.length2,
+            &mut self.mass1,
+            &mut self.mass2,
+            &mut self.center_of_mass1,
+            &mut self.center_of_mass2,
+            &mut self.inertia1,
+            &mut self.inertia2,
+            &mut self.gravity,
+            &mut self.dt,
+            &mut self.max_velocity1,
+            &mut self.max_velocity2,
+            negative,
+            zero,
+            positive,
+            &mut self.torque_noise,
+            &mut self.friction.joint1,
+            &mut self.friction.joint2,
         ]
     }
 
@@ -186,12 +205,14 @@ for_f32_and_f64! {
         /// [`Params::validate`], also in a `const`, where neither `?` nor `for` is allowed.
         pub(crate) const fn check(&self) -> Result<(), Error> {
             let mut params = *self;
-            let mut fields: &[_] = &params.fields_mut();
-            while let [(name, value, unit, range), rest @ ..] = fields {
-                if let Err(error) = range.check(name, **value as f64, unit) {
+            let (mut fields, mut numbers): (&[_], &[_]) = (&FIELDS, &params.numbers_mut());
+            while let ([(name, unit, range), fields_left @ ..], [number, left @ ..]) =
+                (fields, numbers)
+            {
+                if let Err(error) = range.check(name, **number as f64, unit) {
                     return Err(error);
                 }
-                fields = rest;
+                (fields, numbers) = (fields_left, left);
             }
             let (lc1, lc2) = (self.center_of_mass1, self.center_of_mass2);
             let (name, value) = if self.inertia1 + self.mass1 * lc1 * lc1 <= 0.0 {
@@ -222,9 +243,9 @@ for_f32_and_f64! {
         /// [`Params::cast`] in a `const`.
         pub(super) const fn round(mut params: Params) -> Self {
             let mut rounded = Self { dynamics: params.dynamics, ..Self::ACROBOT };
-            let mut numbers: &mut [_] = &mut rounded.fields_mut();
-            let mut given: &[_] = &params.fields_mut();
-            while let ([(_, number, ..), others @ ..], [(_, x, ..), rest @ ..]) = (numbers, given) {
+            let mut numbers: &mut [_] = &mut rounded.numbers_mut();
+            let mut given: &[_] = &params.numbers_mut();
+            while let ([number, others @ ..], [x, rest @ ..]) = (numbers, given) {
                 **number = **x as S;
                 (numbers, given) = (others, rest);
             }

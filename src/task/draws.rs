@@ -6,7 +6,7 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::Real;
 use crate::numpy::uniform;
-use crate::physics::{Dynamics, Modeled, Params, Viscous, check_params};
+use crate::physics::{Dynamics, FIELDS, Modeled, Params, Viscous, check_params};
 
 /// How a reset draws one parameter, in its unit. Where both bounds are equal, it draws nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,7 +168,7 @@ impl<S: Real> Draws<S> {
     /// [`Normal`](Draw::Normal) whose mean is not between its bounds or whose standard deviation is
     /// not above 0.
     pub fn new(mut params: Params<Draw<S>>) -> Result<Self, Error> {
-        for (name, draw, unit, _) in params.fields_mut() {
+        for (draw, (name, unit, _)) in params.numbers_mut().into_iter().zip(FIELDS) {
             draw.check(name, unit)?;
         }
         Ok(Self(params))
