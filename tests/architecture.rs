@@ -1,67 +1,46 @@
 //! The architecture: a module imports only from modules above it in ARCHITECTURE.md's table, each
 //! import names the file that defines the item, and no files import each other.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
-use std::{fs, io};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
 
-fn files(path: PathBuf) -> Vec<PathBuf> {
-    let inside = |entry: io::Result<fs::DirEntry>| files(entry.unwrap().path());
-    match fs::read_dir(&path) {
-        Ok(folder) => folder.flat_map(inside).collect(),
-        Err(_) => vec![path],
+/// The code of each file of a folder, by its module, such as `physics::state`.
+fn read(folder: &Path, sources: &mut BTreeMap<String, String>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            read(&path, sources);
+        } else {
+            let text = fs::read_to_string(&path).unwrap();
+            let lines = text.lines().map(|line| line.split("//").next().unwrap());
+            let module = path.strip_prefix("src").unwrap().with_extension("");
+            let module = module.to_str().unwrap().replace('/', "::");
+            sources.insert(module, lines.collect::<Vec<_>>().join("\n"));
+        }
     }
 }
 
-fn words(text: &str) -> impl Iterator<Item = &str> {
-    let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
-    words.filter(|word| !word.is_empty())
-}
-
-/// The name of the public item that this line defines.
-fn defined(line: &str) -> Option<&str> {
-    let kinds = ["fn", "struct", "enum", "trait", "type", "const", "static"];
-    let mut words = words(line.strip_prefix("pub")?).skip_while(|word| !kinds.contains(word));
-    // `const fn` is two of these words.
-    words.find(|word| !kinds.contains(word))
-}
-
-/// All paths in the code, such as `crate/physics/Model`, with groups in braces taken apart.
-fn paths(code: &str) -> Vec<PathBuf> {
-    let is_other = |c: char| !c.is_alphanumeric() && !"_/".contains(c);
-    let (mut paths, mut group) = (Vec::new(), "");
-    for token in code.split_inclusive(is_other) {
-        let path = token.trim_end_matches(is_other);
-        if token.ends_with("/{") {
-            group = path;
-        } else if !path.is_empty() {
-            paths.push(Path::new(group).join(path));
-        }
-        if token.ends_with('}') {
-            group = "";
+/// The paths that begin with a keyword, from the crate's root, with groups in braces taken apart.
+fn paths(code: &str, keyword: &str, module: &str) -> Vec<String> {
+    let mut paths = Vec::new();
+    for (at, _) in code.match_indices(keyword) {
+        let path = &code[at + keyword.len()..];
+        let end = path.find(|c: char| !c.is_alphanumeric() && !"_:".contains(c)).unwrap();
+        let (path, rest) = path.split_at(end);
+        let group = rest.strip_prefix('{').and_then(|rest| rest.split_once('}'));
+        for name in group.map_or("", |(names, _)| names).split(',') {
+            let path = format!("{module}::{path}{}", name.trim());
+            paths.push(path.trim_matches(':').to_owned());
         }
     }
     paths
 }
 
-/// The module that a path in `file` names, and the file that defines the item, otherwise that of
-/// the module.
-fn target(sources: &BTreeMap<PathBuf, String>, file: &Path, path: &Path) -> Option<[PathBuf; 2]> {
-    path.iter().nth(1)?; // not the path in `pub(super)`
-    let path = match path.iter().next()?.to_str()? {
-        "crate" => path.strip_prefix("crate").ok()?.to_owned(),
-        "super" => file.parent()?.join(path.strip_prefix("super").ok()?),
-        child => Some(file.join(path)).filter(|_| sources.contains_key(&file.join(child)))?,
-    };
-    let mut modules = path.ancestors().filter(|path| sources.contains_key(*path));
-    let module = modules.next().unwrap_or(Path::new(""));
-    let item = path.strip_prefix(module).ok()?.to_str()?.split('/').next();
-    let defines = |code: &str| code.lines().any(|line| defined(line) == item);
-    let files = sources.iter().filter(|(_, code)| defines(code));
-    let homes = files.filter(|(home, _)| home.starts_with(module));
-    let home = homes.min_by_key(|(home, _)| home.iter().count());
-    let home = home.map_or(module, |(home, _)| home);
-    Some([module, home].map(Path::to_owned))
+fn defines(code: &str, item: &str) -> bool {
+    let kinds = ["fn", "struct", "enum", "trait", "type", "const", "static"];
+    let words: Vec<_> = code.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+    words.windows(2).any(|pair| kinds.contains(&pair[0]) && pair[1] == item && !item.is_empty())
 }
 
 #[test]
@@ -70,53 +49,45 @@ fn imports_go_one_way() {
     let (_, table) = text.split_once("| modules in `src/` |").unwrap();
     let rows = table.lines().skip(2).take_while(|line| !line.is_empty());
     let order: Vec<&str> = rows.map(|row| row.split('`').nth(1).unwrap()).collect();
-    let row = |file: &Path| order.iter().position(|module| file.starts_with(module));
+    let row = |module: &str| order.iter().position(|name| module.split("::").next() == Some(name));
 
     let mut sources = BTreeMap::new();
-    for path in files("src".into()) {
-        let file = path.strip_prefix("src").unwrap().with_extension("");
-        let text = fs::read_to_string(path).unwrap().replace("::", "/");
-        let lines = text.lines().map(|line| line.split("//").next().unwrap());
-        let code = lines.filter(|line| !line.ends_with(';') || !line.contains("mod "));
-        sources.insert(file, code.collect::<Vec<_>>().join("\n"));
-    }
+    read("src".as_ref(), &mut sources);
     // These only re-export and document.
-    sources.retain(|file, _| !["lib", "guide"].map(Path::new).contains(&&**file));
-
+    sources.retain(|module, _| !["lib", "guide"].contains(&&**module));
     let mut imports = BTreeMap::new();
     for (file, code) in &sources {
-        let (mut own, mut exported) = (String::new(), Vec::new());
-        for item in code.split_inclusive(';') {
-            let (before, last) = item.split_at(item.rfind("\npub").unwrap_or(item.len()));
-            own += before;
-            match last.split_whitespace().nth(1) {
-                Some("use") => exported.extend(paths(last)),
-                _ => own += last,
+        assert!(row(file).is_some(), "ARCHITECTURE.md has no {file}");
+        let parent = file.rsplit_once("::").map_or("", |(parent, _)| parent);
+        let mut found = Vec::new();
+        let own = paths(code, "\nuse ", file).into_iter();
+        let own = own.filter(|path| sources.keys().any(|child| path.starts_with(child)));
+        let others = [paths(code, "crate::", ""), paths(code, "super::", parent)].concat();
+        for path in own.chain(others) {
+            // The module that the path names, and the file that defines the item.
+            let is_in =
+                |path: &str, module: &str| format!("{path}::").starts_with(&format!("{module}::"));
+            let named = sources.keys().filter(|module| is_in(&path, module));
+            let module = named.max_by_key(|module| module.len()).map_or("", |module| module);
+            let item = path[module.len()..].trim_start_matches(':').split("::").next().unwrap();
+            let inside =
+                sources.iter().filter(|(home, _)| module.is_empty() || is_in(home, module));
+            let mut homes = inside.filter(|(_, code)| defines(code, item));
+            let home = homes.next().map_or(module, |(home, _)| home);
+            if home == file {
+                continue;
             }
+            let is_hidden = home != module && (module.is_empty() || is_in(file, module));
+            assert!(!is_hidden, "{file} imports {path} through a parent");
+            assert!(row(home) <= row(file), "{file} imports {path} from below");
+            found.push(home);
         }
-        // A re-export is an import if the file uses the name itself.
-        exported.retain(|path| words(&own).any(|word| path.ends_with(word)));
-        let all = paths(&own).into_iter().chain(exported);
-        let found = all.filter_map(|path| target(&sources, file, &path));
-        let found: Vec<_> = found.filter(|[_, home]| home != file).collect();
-        // Through a parent or the root, which only re-export, one does not see where an import
-        // leads.
-        let is_hidden = |[module, home]: &&[PathBuf; 2]| module != home && file.starts_with(module);
-        let hidden = found.iter().find(is_hidden);
-        assert_eq!(hidden, None, "{file:?} imports through a parent");
-        let found = found.into_iter().map(|[_, home]| home);
-        let found: BTreeSet<_> = found.filter(|to| row(to).is_some()).collect();
-        assert!(row(file).is_some(), "ARCHITECTURE.md has no {file:?}");
-        let below = found.iter().find(|import| row(import) > row(file));
-        assert_eq!(below, None, "{file:?} imports from below");
         imports.insert(file, found);
     }
     assert!(imports.values().flatten().count() > 200, "{imports:#?}");
     while !imports.is_empty() {
-        let rest: Vec<_> = imports.keys().copied().collect();
-        let used: Vec<_> = imports.values().flatten().cloned().collect();
-        let imports_one = |found: &BTreeSet<_>| found.iter().any(|file| rest.contains(&file));
-        imports.retain(|file, found| used.contains(file) && imports_one(found));
+        let rest: Vec<_> = imports.keys().map(|file| &***file).collect();
+        imports.retain(|_, found| found.iter().any(|file| rest.contains(file)));
         assert!(imports.len() < rest.len(), "a circle: {imports:#?}");
     }
 }
