@@ -1,81 +1,17 @@
-//! Promise 2, the same bits everywhere: digests of long runs. Changing one takes a breaking
-//! release.
+//! Promise 2, the same bits everywhere: digests, which the program `bits` compares on other targets.
+//! Changing one takes a breaking release.
 
-use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
+use acrobot::arithmetic::{Damped, Micro, Reference};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::Viscous;
-use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
+use acrobot::{Fast, Portable};
 use bits::{Digest, balance, episodes, plan, training};
-
-/// Every bit of the states, rewards and ends of random episodes with 64 seeds: about 100,000 steps.
-fn digest<A: Arithmetic>(friction: Viscous<A::Scalar>) -> u64 {
-    let mut digest = Digest::default();
-    for seed in 0..64 {
-        let params = Params { friction, ..Params::default() };
-        let mut acrobot = TimeLimit::v1(Acrobot::<A>::with_params(seed, params).unwrap());
-        let mut actions = Pcg64::new(seed);
-        for _ in 0..3 {
-            loop {
-                let step = acrobot.step(Action::sample(&mut actions));
-                episodes::add_seen(&mut digest, acrobot.inner(), step.observation);
-                digest.add(
-                    u64::from(step.reward.to_bits()) << 2
-                        | u64::from(step.terminated) << 1
-                        | u64::from(step.truncated),
-                );
-                if step.done() {
-                    break;
-                }
-            }
-            acrobot.reset();
-        }
-    }
-    digest.0
-}
-
-fn damped<S: Real>() -> Viscous<S> {
-    Viscous { joint1: S::from_f64(0.1), joint2: S::from_f64(0.05) }
-}
-
-#[test]
-fn random_episodes_are_stable() {
-    let found = [
-        digest::<Reference>(Viscous::default()),
-        digest::<Portable>(Viscous::default()),
-        digest::<Fast>(Viscous::default()),
-        digest::<Micro>(Viscous::default()),
-    ];
-    let expected = [
-        0xd780_4061_b62e_8634,
-        0x4c12_affb_6a85_0a1f,
-        0x365b_8ce2_6c2b_114a,
-        0x2b57_13d8_75b4_e5db,
-    ];
-    assert!(found == expected, "{found:#018x?}");
-
-    let found = [
-        digest::<Damped<Reference>>(damped()),
-        digest::<Damped<Portable>>(damped()),
-        digest::<Damped<Fast>>(damped()),
-        digest::<Damped<Micro>>(damped()),
-    ];
-    let expected = [
-        0x1682_6198_c856_23fb,
-        0xdcd6_db2c_54dd_03bb,
-        0xf2df_d1ad_10ab_8b1d,
-        0x18d0_99fd_24fa_c2d7,
-    ];
-    assert!(found == expected, "with friction: {found:#018x?}");
-}
 
 /// Friction and the task are two things: the initial states, rewards and the goal stay Gymnasium's,
 /// too.
 #[test]
 fn a_friction_of_0_changes_no_bit() {
-    let damped = digest::<Damped<Reference>>(Viscous::default());
-    assert_eq!(damped, digest::<Reference>(Viscous::default()));
-    let damped = digest::<Damped<Fast>>(Viscous::default());
-    assert_eq!(damped, digest::<Fast>(Viscous::default()));
+    assert_eq!(episodes::sixteen::<Damped<Reference>>(), episodes::REFERENCE);
+    assert_eq!(episodes::sixteen::<Damped<Fast>>(), episodes::FAST);
 }
 
 /// `Portable` calls the sines of the crate `libm`, in the version of the build.
@@ -99,18 +35,16 @@ fn libm_has_the_sines_of_portables_digests() {
     );
 }
 
-/// The program `bits` compares the same episodes on other targets.
-fn check_episodes<A: Arithmetic>(expected: [u64; 16]) {
-    let found: Vec<u64> = (0..16).map(episodes::digest::<A>).collect();
-    assert!(found == expected, "{:?}: {found:#018x?}", A::default());
-}
-
 #[test]
 fn the_shared_episodes_are_stable() {
-    check_episodes::<Reference>(episodes::REFERENCE);
-    check_episodes::<Portable>(episodes::PORTABLE);
-    check_episodes::<Fast>(episodes::FAST);
-    check_episodes::<Micro>(episodes::MICRO);
+    let found = [
+        episodes::sixteen::<Reference>(),
+        episodes::sixteen::<Portable>(),
+        episodes::sixteen::<Fast>(),
+        episodes::sixteen::<Micro>(),
+    ];
+    let expected = [episodes::REFERENCE, episodes::PORTABLE, episodes::FAST, episodes::MICRO];
+    assert!(found == expected, "{found:#018x?}");
 }
 
 #[test]

@@ -25,13 +25,13 @@ pub fn add_seen<A: Arithmetic, T: Task>(
 
 /// Every bit of one episode, from its initial state to its end, and of the next initial state. Even
 /// episodes have random actions, odd ones torque against θ̇1.
-pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
+fn episode<A: Arithmetic>(number: u64) -> u64 {
     let mut digest = Digest::default();
-    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(episode));
-    let mut actions = Pcg64::new(episode);
+    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(number));
+    let mut actions = Pcg64::new(number);
     add_seen(&mut digest, acrobot.inner(), acrobot.inner().observation());
     loop {
-        let action = if episode.is_multiple_of(2) {
+        let action = if number.is_multiple_of(2) {
             Action::sample(&mut actions)
         } else {
             against(acrobot.state().dtheta1)
@@ -48,10 +48,11 @@ pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
     }
 }
 
-/// How many of the sixteen episodes have the expected digests.
-pub fn equal<A: Arithmetic>(expected: &[u64; 16]) -> usize {
-    let found = (0..).map(digest::<A>).zip(expected);
-    found.filter(|(found, expected)| found == *expected).count()
+/// The digests of sixteen episodes in one.
+pub fn sixteen<A: Arithmetic>() -> u64 {
+    let mut digest = Digest::default();
+    (0..16).for_each(|number| digest.add(episode::<A>(number)));
+    digest.0
 }
 
 /// Torques so small that angles and velocities stay subnormal for 200 steps.
@@ -220,75 +221,7 @@ pub const DAMPED: [u64; 2] = [0xaa5b_ea28_3a02_5fe0, 0x02ab_1a17_374e_5871];
 
 pub const SWINGUP: [u64; 2] = [0x22a6_0076_4bda_c4c0, 0x4329_8e9d_2663_2406];
 
-pub const REFERENCE: [u64; 16] = [
-    0x1814_77bc_77f4_e827,
-    0x62fd_2977_7e14_1128,
-    0x840d_1d07_b054_b2f9,
-    0x8862_e1f0_bcde_9dc1,
-    0x2e7e_9bbb_5a6a_11d6,
-    0x60ea_3e5b_fdf7_39de,
-    0xbd49_1819_7654_92be,
-    0x60a4_198e_edfe_33d6,
-    0xe9e6_9a47_d45c_4d5b,
-    0xfad8_6477_0dcb_78bf,
-    0x371f_f9c4_4179_c8f7,
-    0x4816_3de3_832b_82fc,
-    0x5e96_d08b_f61d_b839,
-    0x8540_3f3f_d2c3_812e,
-    0x64bc_4990_b254_82e0,
-    0x040b_848a_68ed_993b,
-];
-pub const PORTABLE: [u64; 16] = [
-    0xeb3c_f23f_71fa_31d2,
-    0xb098_0e0a_2eea_dcf6,
-    0x7af9_cb7c_29f7_cb31,
-    0xde8b_5c34_8279_9555,
-    0x7126_4e5f_f9f9_84e2,
-    0xa1f5_0827_bf27_42a6,
-    0x0ea6_9d11_fbec_1106,
-    0xd317_e228_2287_4003,
-    0x2aac_c3ac_1648_d04a,
-    0x7803_729c_a592_a113,
-    0x78be_f4c9_934f_0894,
-    0x62d2_df5e_b4dc_b835,
-    0x7cba_1845_27cc_46bc,
-    0x3ed1_c4ed_c1de_74c2,
-    0x5b5e_106e_cde0_2469,
-    0x64dd_4806_c0b9_2d75,
-];
-pub const FAST: [u64; 16] = [
-    0xa0f2_48e0_a096_4e5e,
-    0x5d8d_ef03_d7b1_356a,
-    0x5c68_e56a_db61_e0bb,
-    0xaeb1_f46b_83d3_eb96,
-    0x549d_7292_3fbf_b62f,
-    0xcda3_a90b_ef1d_b8b5,
-    0x9ab1_6d5c_afdf_78ec,
-    0x82f4_200b_dc4f_48b4,
-    0x119c_3901_757b_39eb,
-    0xacc2_491c_6f29_603a,
-    0x772d_c2e8_35fd_0d55,
-    0xcd30_724f_d0de_9c29,
-    0x7a45_677e_dcc5_b567,
-    0x89cf_002d_68f0_1a07,
-    0x92b4_9274_9578_9170,
-    0xca8f_2fe9_54b2_2733,
-];
-pub const MICRO: [u64; 16] = [
-    0x80b5_5cda_994d_906d,
-    0xfd9a_26c5_8dbf_dfd2,
-    0xe974_b345_20a1_ea9d,
-    0xeefd_ec91_9636_7234,
-    0x735d_a6d6_acfa_64bf,
-    0x21a2_ee5d_af74_e2b4,
-    0xc7f1_3659_ce4b_25b1,
-    0x6629_9bd0_fcba_77eb,
-    0x023f_97a7_2002_9a81,
-    0x3ea0_3dea_270f_a6d6,
-    0x25d5_1bd3_b25d_299d,
-    0x7aa1_ed34_3de0_09a5,
-    0x0b0a_e4e7_6f06_370c,
-    0xf38c_f8c7_9cdb_c59f,
-    0xce74_2a79_e838_f1da,
-    0x9e60_c410_dbe6_2ec1,
-];
+pub const REFERENCE: u64 = 0xbb7e_cdbb_174c_3b77;
+pub const PORTABLE: u64 = 0xbc39_fafe_6c5c_432c;
+pub const FAST: u64 = 0x273b_096c_8e81_c01c;
+pub const MICRO: u64 = 0x9bf7_c576_2904_d031;
