@@ -52,12 +52,6 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
     let version_3 = got("acrobot", 3, "gymnasium", "portable");
     for (from, to, reason) in [
         (r#""mass2":1.5"#, r#""mass2":-1.5"#, "mass2 must be finite and above 0 kg, got -1.5"),
-        (
-            r#""max_steps":500"#,
-            r#""max_steps":0"#,
-            "invalid value: integer `0`, expected a nonzero u32",
-        ),
-        (r#""Book""#, r#""Film""#, "unknown variant `Film`, expected `Book` or `Nips`"),
         (r#""version":4"#, r#""version":3"#, &version_3),
         (&unread, &older, &version_3),
         ("portable", "host", &got("acrobot", 4, "gymnasium", "host")),

@@ -30,6 +30,8 @@ enum Call<S> {
     /// Sets a member to the stored one.
     Load(usize),
     Generator(usize, u64),
+    /// Saves the batch, and goes on with the loaded one.
+    Snapshot,
     Step(Vec<Action>),
     Torques(Vec<S>),
 }
@@ -60,6 +62,7 @@ fn call<A: Tested>() -> BoxedStrategy<Call<A::Scalar>> {
         2 => index().prop_map(Call::Store),
         2 => index().prop_map(Call::Load),
         1 => (index(), any::<u64>()).prop_map(|(index, seed)| Call::Generator(index, seed)),
+        1 => Just(Call::Snapshot),
         12 => each(action()).prop_map(Call::Step),
         4 => each(number(Range::Any)).prop_map(Call::Torques),
     ]
@@ -148,6 +151,11 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                     *alone[index].inner_mut().rng_mut() = Pcg64::new(seed);
                 }
             }
+            Call::Snapshot => {
+                let bytes = postcard::to_stdvec(batch).unwrap();
+                *batch = postcard::from_bytes(&bytes).unwrap();
+                assert_eq!(postcard::to_stdvec(batch).unwrap(), bytes);
+            }
             Call::Step(actions) => self.twins.step(&actions[..len]),
             Call::Torques(torques) => self.twins.step_torques(&torques[..len]),
         }
@@ -190,13 +198,10 @@ fn every_arithmetic_equals_single_acrobots() {
     Twins::<Micro>::at_any_angle();
 }
 
-/// Below, at and above the width of a vector.
+/// Below and above the width of a vector.
 #[test]
 fn any_width_equals_single_acrobots() {
-    Twins::<Fast, 3>::at_every_level();
     Twins::<Fast, 1>::at_every_level();
-    Twins::<Fast, 4>::at_every_level();
-    Twins::<Fast, 7>::at_every_level();
-    Twins::<Fast, 8>::at_every_level();
+    Twins::<Fast, 3>::at_every_level();
     Twins::<Fast, 32>::at_every_level();
 }
