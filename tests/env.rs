@@ -2,7 +2,7 @@
 
 use std::sync::mpsc::{TryRecvError, channel};
 
-use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Reference};
+use acrobot::arithmetic::{Damped, Host};
 use acrobot::env::{
     AcrobotEnv, BoxSpace, DiscreteSpace, Display, Env, Error, RenderMode, Rendering, make,
     make_with,
@@ -98,7 +98,6 @@ fn live_changes_reach_through_every_wrapper() {
 fn borrowed_and_boxed_environments_are_environments() {
     let (sender, frames) = channel();
     let display = Display::new(move |frame| sender.send(frame.width()).unwrap());
-    assert_eq!(format!("{display:?}"), "Display");
     let mode = RenderMode::Human(display);
     let made = make_with::<Fast>("Acrobot-v0", Params::DEFAULT, mode).unwrap();
     let mut boxed: Box<dyn Env> = Box::new(made);
@@ -111,7 +110,7 @@ fn borrowed_and_boxed_environments_are_environments() {
     env.unwrapped_mut().set_state(State::default()).unwrap();
     assert_eq!(env.unwrapped().state(), State::default());
     assert_eq!(env.observation_space().high().len(), 4);
-    assert_eq!(env.action_space().n().get(), 3);
+    assert_eq!(env.action_space(), DiscreteSpace::ACTIONS);
     assert_eq!((env.render(), frames.try_recv()), (Ok(Rendering::Shown), Ok(500)));
     env.close();
     assert_eq!(frames.try_recv(), Err(TryRecvError::Disconnected), "the display is dropped");
@@ -121,50 +120,36 @@ fn borrowed_and_boxed_environments_are_environments() {
 /// Any arithmetic and any task make an environment, bit-identical to the acrobot alone.
 #[test]
 fn any_acrobot_is_an_environment() {
-    fn check<A: Arithmetic, T: Task>() {
-        let mut alone = Acrobot::<A, T>::new(1);
-        let mut env = AcrobotEnv::new(alone.clone(), RenderMode::None);
-        for action in [Action::Positive, Action::Negative] {
-            let (step, expected) = (env.step(action), alone.step(action));
-            assert_eq!(step.observation, expected.observation.as_ref());
-            assert_eq!((step.reward, step.terminated), (expected.reward, expected.terminated));
-        }
-        assert_eq!(env.unwrapped().acrobot(), Some(&alone));
-    }
-    check::<Host, Gymnasium>();
-    check::<Reference, Gymnasium>();
-    check::<Portable, GymnasiumV0>();
-    check::<Micro, Gymnasium>();
-    check::<Damped<Fast>, Swingup>();
+    let mut alone = Acrobot::<Damped<Fast>, Swingup>::new(1);
+    let mut env = AcrobotEnv::new(alone.clone(), RenderMode::None);
+    let (step, expected) = (env.step(Action::Positive), alone.step(Action::Positive));
+    assert_eq!(step.observation, expected.observation);
+    assert_eq!((step.reward, step.terminated), (expected.reward, expected.terminated));
+    assert_eq!(env.unwrapped().acrobot(), Some(&alone));
 }
 
 #[test]
 fn rejections_name_the_rule() {
-    for id in ["Acrobot-v2", "acrobot-v0", "", "CartPole-v1"] {
-        let error = make(id).unwrap_err();
+    for id in ["acrobot-v0", "CartPole-v1"] {
         let expected = format!(r#"the id must be "Acrobot-v1" or "Acrobot-v0", got {id:?}"#);
-        assert_eq!(error.to_string(), expected);
-        assert_eq!(error, Error::UnknownId(id.to_owned()));
+        assert_eq!(make(id).unwrap_err().to_string(), expected);
     }
-
     let rule = "the render mode must be RgbArray, Ansi or Human to render, got None";
     assert_eq!(make("Acrobot-v1").unwrap().render().unwrap_err().to_string(), rule);
 }
 
+/// `cargo test -p properties` tries more spaces.
 #[test]
 fn spaces_know_their_elements() {
     let space = make("Acrobot-v1").unwrap().observation_space();
     assert!(space.contains(space.low()) && space.contains(space.high()));
-    for i in 0..6 {
-        for number in [space.high()[i].next_up(), space.low()[i].next_down(), f32::NAN] {
-            let mut outside = space.high().to_vec();
-            outside[i] = number;
-            assert!(!space.contains(&outside), "{outside:?}");
-        }
+    for number in [space.high()[5].next_up(), space.low()[5].next_down(), f32::NAN] {
+        let mut outside = space.high().to_vec();
+        outside[5] = number;
+        assert!(!space.contains(&outside), "{outside:?}");
     }
     assert!(!BoxSpace::new(vec![0.0], vec![1.0]).unwrap().contains(&[0.5, 0.5]));
     assert!(BoxSpace::new(vec![0.0], vec![1.0, 2.0]).is_none());
-    assert!(Action::ALL.iter().all(|&action| DiscreteSpace::ACTIONS.contains(action)));
     assert!(DiscreteSpace::new(&[]).is_none());
 }
 
@@ -172,28 +157,25 @@ fn spaces_know_their_elements() {
 /// they were given.
 #[test]
 fn numbers_that_only_rounding_makes_valid_or_invalid_are_rejected() {
-    let make = |params| make_with::<Fast>("Acrobot-v1", params, RenderMode::None);
-    let mut env = make(Params::DEFAULT).unwrap();
+    let mut env = make_with::<Fast>("Acrobot-v1", Params::DEFAULT, RenderMode::None).unwrap();
     let acrobot = env.unwrapped_mut();
     let before = (acrobot.state(), acrobot.params());
-    let far = State::from([0.0, -1e300, 0.0, 0.0]);
+    let far = State { theta2: -1e300, ..State::HANGING };
     let rule = "theta2 must be within its range as f32, in rad, got ";
     assert_eq!(acrobot.set_state(far).unwrap_err().to_string(), format!("{rule}{}", -1e300));
     let default = Params::<f64>::DEFAULT;
-    let light = Params { inertia1: 1e-60, center_of_mass1: 0.0, ..default };
     for (params, rule, value) in [
         (Params { mass1: -1.0, ..default }, "mass1 must be finite and above 0 kg", -1.0),
         // Rounded to `f32` it is 0.
         (Params { torque_noise: -1e-60, ..default }, "torque_noise must be finite", -1e-60),
         (Params { mass1: 1e300, ..default }, "mass1 must be within its range as f32", 1e300),
         (Params { dt: 1e-60, ..default }, "dt must be within its range as f32", 1e-60),
-        (light, "inertia1 must be within its range as f32", 1e-60),
     ] {
         let error = acrobot.set_params(params).unwrap_err();
         let text = error.to_string();
         assert!(text.starts_with(rule) && text.ends_with(&format!("got {value}")), "{text}");
-        let made = make(params).unwrap_err();
-        assert_eq!((made.to_string(), made), (text, Error::Invalid(error)));
+        let made = make_with::<Fast>("Acrobot-v1", params, RenderMode::None).unwrap_err();
+        assert_eq!(made, Error::Invalid(error));
     }
     assert_eq!((acrobot.state(), acrobot.params()), before);
 }

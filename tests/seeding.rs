@@ -127,14 +127,9 @@ fn long_texts_are_seeds_up_to_a_limit() {
     // np.random.SeedSequence(10**4300 - 1).generate_state(2, np.uint64)
     let words = [0x0db9_182d_a261_8a7e, 0x23df_384a_98ce_fb0a];
     assert_eq!(seed(&"9".repeat(4300)).generate_state(), words);
-    assert_eq!(seed(&format!("{:0>4300}", 42)), SeedSequence::new(42));
-    let limit = 4300;
-    for len in [4301, 50_000_000] {
-        let error = "9".repeat(len).parse::<SeedSequence>().unwrap_err();
-        assert_eq!(error, Error::SeedTooLong { len, limit });
-        let expected = format!("seed must have at most 4300 digits, got {len} bytes");
-        assert_eq!(error.to_string(), expected);
-    }
+    let error = "9".repeat(50_000_000).parse::<SeedSequence>().unwrap_err();
+    assert_eq!(error.to_string(), "seed must have at most 4300 digits, got 50000000 bytes");
+    assert!("0".repeat(4301).parse::<SeedSequence>().is_err());
 }
 
 #[test]
@@ -148,31 +143,24 @@ fn bounds_can_be_checked_in_a_const() {
 #[test]
 fn draws_of_other_widths_are_parts_of_words() {
     let (mut words, mut rng) = (Pcg64::new(42), Pcg64::new(42));
-    let next = words.next_u64();
-    assert_eq!([rng.next_u32(), rng.next_u32()], [next as u32, (next >> 32) as u32]);
+    let next = [(); 3].map(|()| words.next_u64().to_le_bytes());
+    let halves = [rng.next_u32(), rng.next_u32()].map(u32::to_le_bytes);
     let mut bytes = [0; 13];
     rng.fill_bytes(&mut bytes);
-    let expected = [words.next_u64(), words.next_u64()].map(u64::to_le_bytes);
-    assert_eq!(bytes, expected.as_flattened()[..13]);
+    let found = [halves.as_flattened(), &bytes].concat();
+    assert_eq!(found, next.as_flattened()[..21]);
 }
 
-/// Generators are equal if their next draws are equal, whether they have drawn before or not. They
-/// print their next draws.
+/// Whether they have drawn before or not.
 #[test]
 fn generators_compare_and_print_by_their_next_draws() {
     let new = Pcg64::new(42);
-    let mut started = new.clone();
-    let next = started.next_u64();
+    let (mut started, mut halved) = (new.clone(), new.clone());
+    let (next, _) = (started.next_u64(), halved.next_u32());
     assert_ne!(started, new);
-    assert_eq!(format!("{new:?}"), format!("Pcg64 {{ next_u64: {next}, half: None }}"));
-    let mut halved = new.clone();
-    let low = halved.next_u32();
     assert_ne!(halved, started, "one has half a draw left");
-    let (second, high) = (started.next_u64(), next >> 32);
-    assert_eq!(u64::from(low), next & 0xffff_ffff);
-    assert_eq!(
-        format!("{halved:?}"),
-        format!("Pcg64 {{ next_u64: {second}, half: Some({high}) }}")
-    );
-    assert_ne!(Pcg64::new(43), new);
+    assert_eq!(format!("{new:?}"), format!("Pcg64 {{ next_u64: {next}, half: None }}"));
+    let (second, half) = (started.next_u64(), next >> 32);
+    let expected = format!("Pcg64 {{ next_u64: {second}, half: Some({half}) }}");
+    assert_eq!(format!("{halved:?}"), expected);
 }
