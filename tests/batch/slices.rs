@@ -1,15 +1,16 @@
 //! What a batch reads and writes: rejected input changes nothing.
 
-use acrobot::batch::{Batch, Block, Member, SimdLevel, StepBuffers};
-use acrobot::numpy::Pcg64;
+use acrobot::batch::{Member, SimdLevel, StepBuffers, VecBatch};
+use acrobot::numpy::SeedSequence;
 use acrobot::task::Draws;
 use acrobot::{Fast, Params, ResetOptions, State};
 use common::twins::LEVELS;
 
-type Small = Batch<Fast, ([Block; 1], [Pcg64; 3])>;
+// The memory of a `VecBatch`, because each other one takes seconds to compile.
+type Small = VecBatch<Fast>;
 
 fn small() -> Small {
-    Batch::new(1, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 3])).unwrap()
+    VecBatch::new(SeedSequence::new(1), 3).unwrap()
 }
 
 #[test]

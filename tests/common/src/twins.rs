@@ -189,7 +189,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
 impl<A: Arithmetic<Scalar = f32>> Twins<A> {
     /// Lanes have the sines of one number at any angle, also where they overflow.
     pub fn at_any_angle() {
-        const STRIDE: usize = if cfg!(debug_assertions) { 8192 } else { 256 };
+        const STRIDE: usize = if cfg!(debug_assertions) { 16_384 } else { 256 };
 
         let mut twins = Self::new(1024, false, Autoreset::Disabled);
         // At rest and without a torque a step changes the angles little.
