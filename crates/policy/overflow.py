@@ -13,12 +13,7 @@ from acrobot_rs import policy
 HUGE = 3e38
 UP, DOWN = [HUGE, 0, HUGE, 0, -HUGE, 0], [-HUGE, 0, -HUGE, 0, HUGE, 0]
 #: Where UP is HUGE; infinite; infinite, but HUGE in another order; no number.
-OBSERVATIONS = [
-    (0.5, 0, 0.5, 0, 0, 0),
-    (1, 0, 1, 0, 0, 0),
-    (1, 0, 1, 0, 1, 0),
-    (1, 0, 1, 0, 2, 0),
-]
+OBSERVATIONS = [(0.5, 0, 0.5, 0, 0, 0), (1, 0, 1, 0, 0, 0), (1, 0, 1, 0, 1, 0), (1, 0, 1, 0, 2, 0)]
 #: Three scores. The unit before them changes the last, which is otherwise the highest.
 LAST = ([[0], [0], [1]], [0, 0, 0.5], "none")
 
