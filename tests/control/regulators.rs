@@ -69,17 +69,37 @@ fn gains_are_exact_over_many_decades() {
     check::<f32>(1e-7);
 }
 
-/// The smallest number of `b` belongs to a row of zeros, so the other gains must not depend on it.
+/// By hand or with 200 digits.
 #[test]
-fn a_small_effect_of_the_torque_does_not_spoil_a_gain() {
-    let a = [[1.0, 0.0, 0.1, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0], [0.0; 4]];
-    let q = diagonal([1.0, 0.0, 0.0, 0.0]);
-    // 200 digits; smaller effects change none of these.
-    let expected = [0.9317451415095747, 0.0, 1.3650971698084902, 1.2719226556575325];
-    for effect in [1e-16, 1e-20, 1e-300] {
-        let b = [0.005, 0.0, 0.1, effect];
-        let found = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap();
-        assert!(relative(&found.gain, &expected) < 1e-14, "{found:?}");
+fn gains_of_special_models_are_exact() {
+    let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
+    // The smallest number of `b` belongs to a row of zeros, so the other gains must not depend on
+    // it.
+    let small = |effect| {
+        let a = [[1.0, 0.0, 0.1, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0], [0.0; 4]];
+        let gain = [0.9317451415095747, 0.0, 1.3650971698084902, 1.2719226556575325];
+        (a, [0.005, 0.0, 0.1, effect], diagonal([1.0, 0.0, 0.0, 0.0]), gain)
+    };
+    for (a, b, q, expected) in [
+        small(1e-16),
+        small(1e-300),
+        // The doubling divides by a pivot that is small unless rows are exchanged.
+        (
+            [[1e4, 0.0, 0.01, 0.0], [0.0; 4], [1e4, 0.0, 0.0, 0.0], [0.0; 4]],
+            [0.0, 0.0, 100.0, 0.0],
+            IDENTITY,
+            [100_000_099.009_999, 0.0, 99.99999900999901, 0.0],
+        ),
+        // Without weights the cheapest gain mirrors 1.1 in the unit circle: 1.1 − k = 1 / 1.1.
+        (diagonal([1.1, 0.5, 0.4, 0.3]), all, none, [1.1 - 1.0 / 1.1, 0.0, 0.0, 0.0]),
+        // Elements below 1, whose powers grow as 1.2.
+        ([[0.3; 4]; 4], all, none, [(1.2 - 1.0 / 1.2) / 4.0; 4]),
+        (diagonal([0.5; 4]), all, none, [0.0; 4]),
+        (diagonal([0.5; 4]), [0.0; 4], IDENTITY, [0.0; 4]),
+        (none, all, IDENTITY, [0.0; 4]),
+    ] {
+        let found = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap().gain;
+        assert!(found == expected || relative(&found, &expected) < 1e-14, "{found:?}");
     }
 }
 
@@ -124,30 +144,6 @@ fn a_gain_that_rounding_spoils_is_an_error() {
     assert!((1e-9..1e-7).contains(&found(growing(2.00002), 1.0)));
     assert_eq!(found(growing(3.0), 1e-249), 0.0);
     assert_eq!(found(growing(3.0), 1e-251), 1.0);
-}
-
-/// The doubling divides by a pivot that is small unless rows are exchanged.
-#[test]
-fn a_motion_that_grows_ten_thousandfold_is_stopped() {
-    let a = [[1e4, 0.0, 0.01, 0.0], [0.0; 4], [1e4, 0.0, 0.0, 0.0], [0.0; 4]];
-    let found = lqr(&DiscreteModel { a, b: [0.0, 0.0, 100.0, 0.0] }, &IDENTITY, 1.0).unwrap();
-    // 200 digits.
-    let expected = [100_000_099.009_999, 0.0, 99.99999900999901, 0.0];
-    assert!(relative(&found.gain, &expected) < 1e-15, "{found:?}");
-}
-
-/// Motions that persist without a gain: their powers leave the range in which `f64` adds exactly.
-#[test]
-fn motions_that_the_torque_does_not_reach_have_no_gain() {
-    let a = [
-        [2.0, -0.0625, 16.0, -49152.0],
-        [0.0, 1.0, 256.0, -786432.0],
-        [0.0, 0.0, -1.0, 8192.0],
-        [0.0, 0.0, -0.00048828125, 3.0],
-    ];
-    let b = [128.0, 1024.0, 0.0, 0.0];
-    let error = lqr(&DiscreteModel { a, b }, &diagonal([5000.0, 20.0, 200.0, 10.0]), 27000.0);
-    assert!(error.is_err(), "{error:?}");
 }
 
 fn upright() -> DiscreteModel {
@@ -196,6 +192,18 @@ fn a_regulator_that_cannot_exist_is_an_error() {
         (diagonal([1.1, 1.1, 0.5, 0.3]), all, IDENTITY, stabilizable),
         (persistent, all, none, detectable),
         (diagonal([1.0, 1.5, 0.5, 0.5]), all, diagonal([0.0, 1.0, 1.0, 1.0]), detectable),
+        // Their powers leave the range in which `f64` adds exactly.
+        (
+            [
+                [2.0, -0.0625, 16.0, -49152.0],
+                [0.0, 1.0, 256.0, -786432.0],
+                [0.0, 0.0, -1.0, 8192.0],
+                [0.0, 0.0, -0.00048828125, 3.0],
+            ],
+            [128.0, 1024.0, 0.0, 0.0],
+            diagonal([5000.0, 20.0, 200.0, 10.0]),
+            stabilizable,
+        ),
     ] {
         let error = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap_err();
         assert_eq!(error, expected, "{a:?} {b:?} {q:?}");
@@ -213,21 +221,4 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let model = DiscreteModel { a: growing.map(cast::<f32, 4>), b: [1e-30; 4] };
     let error = lqr(&model, &IDENTITY.map(cast), 1.0).unwrap_err();
     assert_eq!(error.to_string(), "cost_to_go must be finite in each element, got inf");
-}
-
-/// Of all gains that stabilize, the regulator has the cheapest, even where the weights do not ask
-/// for one.
-#[test]
-fn a_motion_that_grows_is_stopped_without_weights() {
-    let gain = |a, b, q| lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap().gain;
-    let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
-    // The cheapest way mirrors 1.1 in the unit circle: 1.1 − k = 1 / 1.1.
-    let found = gain(diagonal([1.1, 0.5, 0.4, 0.3]), all, none);
-    assert!(relative(&found, &[1.1 - 1.0 / 1.1, 0.0, 0.0, 0.0]) < 1e-9, "{found:?}");
-    // Elements below 1, whose powers grow as 1.2.
-    let found = gain([[0.3; 4]; 4], all, none);
-    assert!(relative(&found, &[(1.2 - 1.0 / 1.2) / 4.0; 4]) < 1e-9, "{found:?}");
-    assert_eq!(gain(diagonal([0.5; 4]), all, none), [0.0; 4]);
-    assert_eq!(gain(diagonal([0.5; 4]), [0.0; 4], IDENTITY), [0.0; 4]);
-    assert_eq!(gain(none, all, IDENTITY), [0.0; 4]);
 }
