@@ -2,8 +2,6 @@
 
 use core::f32::consts::PI;
 
-use crate::weights::{FNV, fnv};
-
 /// How one number of the state, from `-high` to `high`, is divided.
 #[derive(Clone, Debug)]
 struct Dimension {
@@ -142,24 +140,6 @@ impl<const S: usize, const T: usize> TileCoder<S, T> {
             }
         }
         slots.map(|slot| ((u32::from(slot) * S as u32) >> 16) as u16)
-    }
-
-    /// A hash of all that defines the tiles, so that weights saved for other tiles are rejected.
-    pub(crate) fn fingerprint(&self) -> u32 {
-        let mut hash = FNV;
-        let mut mix = |word: u32| hash = word.to_le_bytes().into_iter().fold(hash, fnv);
-        let tilings = self.offsets.iter().zip(&self.strides);
-        for (dimension, (offsets, strides)) in self.dimensions.iter().zip(tilings) {
-            mix((-dimension.high).to_bits());
-            mix(dimension.high.to_bits());
-            mix(u32::from(dimension.intervals) << 1 | u32::from(dimension.cyclic));
-            for (&offset, &stride) in offsets.iter().zip(strides) {
-                mix(u32::from(offset) << 16 | u32::from(stride));
-            }
-        }
-        self.bases.iter().for_each(|&base| mix(u32::from(base)));
-        mix(S as u32);
-        hash
     }
 }
 

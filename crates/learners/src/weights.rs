@@ -1,11 +1,11 @@
-//! Weights as little-endian bytes: magic, version, size, the tiles' fingerprint, the weights and a
-//! checksum.
+//! Weights as little-endian bytes: magic, version, size, number of tilings, weights, checksum.
 
 use core::fmt;
 
 use crate::QLambda;
 
 const MAGIC: [u8; 4] = *b"TILE";
+/// Other tiles need another version.
 const VERSION: u32 = 1;
 /// The words before the weights.
 const HEADER: usize = 4;
@@ -16,7 +16,7 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
 
     /// The weights as [`QLambda::BYTES`] bytes, from the first to the last.
     pub fn save(&self) -> impl Iterator<Item = u8> + '_ {
-        let header = [VERSION, Self::BYTES as u32, self.tiles.fingerprint()];
+        let header = [VERSION, Self::BYTES as u32, T as u32];
         let words = MAGIC.into_iter().chain(header.into_iter().flat_map(u32::to_le_bytes));
         let weights = self.weights.as_flattened().iter().flat_map(|w| w.to_le_bytes());
         let body = words.chain(weights);
@@ -41,7 +41,7 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
         if bytes.len() != Self::BYTES {
             return Err(LoadError::Size { found: bytes.len(), expected: Self::BYTES });
         }
-        if word(3) != self.tiles.fingerprint() {
+        if word(3) != T as u32 {
             return Err(LoadError::Features);
         }
         let body = bytes.iter().take(Self::BYTES - 4).copied();
@@ -61,9 +61,9 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
 }
 
 /// FNV-1a, 32 bits: <http://www.isthe.com/chongo/tech/comp/fnv/>.
-pub(crate) const FNV: u32 = 0x811c_9dc5;
+const FNV: u32 = 0x811c_9dc5;
 
-pub(crate) fn fnv(hash: u32, byte: u8) -> u32 {
+fn fnv(hash: u32, byte: u8) -> u32 {
     (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
 }
 

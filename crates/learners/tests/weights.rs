@@ -1,7 +1,7 @@
 //! Saved weights are loaded unchanged. Other bytes are rejected with the reason, and change
 //! nothing.
 
-use learners::{Budget, LoadError, Memory, Memory16, Memory32, Memory64, QLambda, training};
+use learners::{Budget, LoadError, Memory, Memory32, QLambda, training};
 
 type Small = Memory<32, 16, 100>;
 
@@ -33,46 +33,36 @@ fn saved_weights_are_loaded() {
     assert!(learner.save().eq(bytes));
 }
 
-/// Weights that were saved once stay loadable: magic, version, size, and the fingerprint of the
-/// tiles.
+/// Weights that were saved once stay loadable.
 #[test]
 fn the_header_is_stable() {
-    let headers = [learnt(Memory16::EMPTY), learnt(Memory32::EMPTY), learnt(Memory64::EMPTY)];
-    let expected = [
-        b"TILE\x01\0\0\0\x14\x2c\0\0\xc7\xe8\xdb\x37",
-        b"TILE\x01\0\0\0\x14\x5c\0\0\xe7\x67\x05\x43",
-        b"TILE\x01\0\0\0\x14\xc0\0\0\x02\x5e\x61\x7d",
-    ];
-    for (bytes, expected) in headers.iter().zip(expected) {
-        assert_eq!(bytes[..16], *expected);
-    }
+    let header = &learnt(Memory32::EMPTY)[..16];
+    assert_eq!(header, b"TILE\x01\0\0\0\x14\x5c\0\0\x34\0\0\0");
 }
 
 #[test]
 fn damaged_bytes_are_rejected() {
     let good = learnt(Small::EMPTY);
-    let with = |at: usize, value: u8| {
-        let mut bytes = good.clone();
-        bytes[at] = value;
-        bytes
-    };
-    assert_eq!(rejected(&[]), LoadError::Magic);
-    assert_eq!(rejected(&good[..3]), LoadError::Magic);
-    assert_eq!(rejected(&with(0, b'X')), LoadError::Magic);
-    let version = rejected(&with(4, 2));
-    assert_eq!(version.to_string(), "weights must have version 1, got 2");
     let longer = [&good[..], &[0]].concat();
-    for length in [4, 7, 8, 15, 16, 20, good.len() - 1, good.len() + 1] {
-        let size = rejected(&longer[..length]);
-        let reason = format!("weights must have 276 bytes, got {length}");
-        assert_eq!(size.to_string(), reason);
+    for length in 0..=longer.len() {
+        let expected = match length {
+            0..4 => LoadError::Magic,
+            276 => continue,
+            _ => LoadError::Size { found: length, expected: 276 },
+        };
+        assert_eq!(rejected(&longer[..length]), expected);
     }
-    // Any other byte, in the size, the weights and the checksum itself.
-    for (at, byte) in good.iter().enumerate() {
-        if at < 8 || (12..16).contains(&at) {
-            continue;
-        }
-        assert_eq!(rejected(&with(at, byte ^ 1)), LoadError::Checksum, "{at}");
+    for at in 0..good.len() {
+        let mut bytes = good.clone();
+        bytes[at] ^= 4;
+        let expected = match at {
+            0..4 => LoadError::Magic,
+            4 => LoadError::Version(5),
+            5..8 => continue,
+            12..16 => LoadError::Features,
+            _ => LoadError::Checksum,
+        };
+        assert_eq!(rejected(&bytes), expected, "{at}");
     }
 }
 
@@ -85,15 +75,12 @@ fn weights_of_other_tiles_are_rejected() {
 /// The checksum is computed after the damage, so it is right.
 #[test]
 fn weights_that_are_not_finite_are_rejected() {
-    for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        let mut bytes = learnt(Small::EMPTY);
-        bytes.truncate(bytes.len() - 4);
-        bytes[16 + 4 * 5..][..4].copy_from_slice(&number.to_le_bytes());
-        let checksum = bytes.iter().fold(0x811c_9dc5, |hash: u32, &byte| {
-            (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
-        });
-        bytes.extend(checksum.to_le_bytes());
-        let reason = rejected(&bytes).to_string();
-        assert_eq!(reason, "weight 5 must be a finite number");
-    }
+    let mut bytes = learnt(Small::EMPTY);
+    bytes.truncate(bytes.len() - 4);
+    bytes[16 + 4 * 5..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let checksum = bytes
+        .iter()
+        .fold(0x811c_9dc5, |hash: u32, &byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
+    bytes.extend(checksum.to_le_bytes());
+    assert_eq!(rejected(&bytes), LoadError::NotFinite(5));
 }
