@@ -1,7 +1,7 @@
 //! A batch beside single acrobots.
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::batch::{Autoreset, SimdLevel, StepResults, VecBatch};
+use acrobot::batch::{Autoreset, Member, SimdLevel, StepResults, VecBatch};
 use acrobot::numpy::SeedSequence;
 use acrobot::task::{Gymnasium, ResetBounds, Task};
 use acrobot::{Acrobot, Action, Params, ResetOptions, State, Step, TimeLimit};
@@ -139,17 +139,22 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
         let mut rows = vec![other; self.alone.len()];
         self.batch.observe(&mut rows).unwrap();
         for (i, alone) in self.alone.iter().enumerate() {
-            let member = self.batch.member(i).unwrap();
+            let batch = &self.batch;
             let inner = alone.inner();
+            let expected = Member {
+                params: *inner.params(),
+                state: inner.state(),
+                elapsed_steps: alone.elapsed_steps(),
+                ended: self.ended[i],
+                rng: inner.rng().clone(),
+            };
+            let member = batch.member(i).unwrap();
+            assert_eq!(member, expected, "acrobot {i}");
+            assert_eq!(bits(member.state), bits(expected.state), "acrobot {i}");
             assert!(equal(&rows[i], &inner.observation()), "acrobot {i}");
-            assert_eq!(bits(member.state), bits(inner.state()), "acrobot {i}");
-            assert_eq!(member.elapsed_steps, alone.elapsed_steps(), "acrobot {i}");
-            assert_eq!(self.batch.elapsed_steps_of(i), Some(member.elapsed_steps));
-            assert_eq!(member.ended, self.ended[i], "acrobot {i}");
-            assert_eq!(self.batch.ended_of(i), Some(member.ended));
-            assert_eq!(member.rng, *inner.rng(), "acrobot {i}");
-            assert_eq!(member.params, *inner.params(), "acrobot {i}");
-            assert_eq!(self.batch.params_of(i), Some(member.params));
+            assert_eq!(batch.elapsed_steps_of(i), Some(member.elapsed_steps));
+            assert_eq!(batch.ended_of(i), Some(member.ended));
+            assert_eq!(batch.params_of(i), Some(member.params));
         }
     }
 
