@@ -1,12 +1,7 @@
-"""Compares the bits of each platform with the recorded digests, and the outcome with the table in
-`docs/determinism.md`.
-
-    python3 platforms.py                  all platforms
-    python3 platforms.py Cortex-M4F …     those with these names
-    python3 platforms.py --update         writes the table
+"""Compares the bits of each platform, or of those with the given names, with the recorded digests.
+Then writes the table of all into `docs/determinism.md`.
 """
 
-import argparse
 import os
 import pathlib
 import subprocess
@@ -89,27 +84,14 @@ def wrong(platform):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Compares the bits of each platform.")
-    parser.add_argument("names", nargs="*", metavar="NAME", help="of a platform")
-    parser.add_argument("--update", action="store_true", help="write the table into the page")
-    options = parser.parse_args()
     known = {each.name: each for each in PLATFORMS}
-    if unknown := set(options.names) - set(known):
-        parser.error(f"no platform has the name {', '.join(unknown)}")
-    chosen = [known[name] for name in options.names or known]
-    failures = [f"{each.name} {reason}" for each in chosen if (reason := wrong(each))]
-
-    table = "\n".join([*HEAD, *map(row, PLATFORMS)])
-    text = DOCUMENT.read_text()
-    start = text.index(HEAD[0])
-    end = text.index("\n\n", start)
-    if text[start:end] != table:
-        if options.update and not failures:
-            DOCUMENT.write_text(text[:start] + table + text[end:])
-        else:
-            failures.append("the table in docs/determinism.md is another one; --update writes it")
-    if failures:
+    chosen = [known[name] for name in sys.argv[1:] or known]
+    if failures := [f"{each.name} {reason}" for each in chosen if (reason := wrong(each))]:
         sys.exit("\n" + "\n".join(failures))
+    before, old = DOCUMENT.read_text().split(HEAD[0])
+    _, after = old.split("\n\n", 1)
+    table = "\n".join([*HEAD, *map(row, PLATFORMS)])
+    DOCUMENT.write_text(f"{before}{table}\n\n{after}")
 
 
 main()
