@@ -175,7 +175,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
             drawn.batch.set_draws(draws::<A>()).unwrap();
             for twins in [&mut shared, &mut drawn] {
                 twins.batch.set_simd_level(level);
-                twins.swing(200);
+                twins.swing(150);
             }
             shared.set_params(Params {
                 torque_noise: Real::from_f64(0.5),
@@ -185,7 +185,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
                 twins.set_bounds(-100.0, 100.0);
                 // After an episode's end the links turn over, which wraps angles.
                 twins.batch.set_autoreset(Autoreset::Disabled);
-                twins.swing(200);
+                twins.swing(100);
             }
         }
     }
