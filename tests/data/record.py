@@ -1,5 +1,5 @@
-"""Records Gymnasium's Acrobot: writes episodes.txt, episodes.bin, steps.bin, free.txt and seeds.txt
-to its folder.
+"""Records Gymnasium's Acrobot: writes episodes.txt, episodes.bin, steps.bin and seeds.txt to its
+folder.
 
 The files hold the bits of one C library's sin, cos and pow: they were recorded with glibc 2.36 on
 x86-64 with FMA. On a CPU with AVX-512 NumPy uses its own sines, so this script disables them.
@@ -104,28 +104,6 @@ def write_episodes():
     (HERE / "episodes.txt").write_text("\n".join(lines) + "\n")
 
 
-def write_free():
-    """Sixty episodes under random actions, without a reset: digests of all states up to some
-    steps."""
-    lines = [
-        f"# {VERSIONS}",
-        "# SEED, and digests of the states' bits after each of 65, 100 and 200 random steps, with "
-        "no reset",
-    ]
-    env = gymnasium.make("Acrobot-v1").unwrapped
-    for seed in range(60):
-        env.reset(seed=seed)
-        env.action_space.seed(seed)
-        words, digests = [], []
-        for step in range(1, 201):
-            env.step(env.action_space.sample())
-            words += bits(env.state).tolist()
-            if step in (65, 100, 200):
-                digests.append(digest(words))
-        lines.append(f"{seed} {hexes(digests, 16)}")
-    (HERE / "free.txt").write_text("\n".join(lines) + "\n")
-
-
 def write_steps():
     """Single steps from states all over the bounds: two thousand with the default parameters, four
     hundred with others, and two hundred from angles that take up to 64 turns to wrap, which rounds
@@ -224,6 +202,5 @@ def write_seeds():
 
 write_episodes()
 write_steps()
-write_free()
 write_seeds()
 print(VERSIONS)

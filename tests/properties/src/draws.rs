@@ -4,7 +4,6 @@ use std::num::NonZeroU32;
 
 use acrobot::env::{BoxSpace, DiscreteSpace};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
-use acrobot::task::ResetBounds;
 use acrobot::{Action, Error};
 use common::Repeating;
 use proptest::prelude::*;
@@ -35,18 +34,6 @@ fn uniform_draws_are_within_their_bounds() {
             let drawn = uniform(&mut rng, low, high);
             assert!(low <= drawn && drawn <= high, "{drawn}");
         }
-    });
-}
-
-#[test]
-fn reset_bounds_are_ordered_and_in_f32() {
-    let bound = || prop_oneof![number::<f64>(Range::Any), prop::num::f64::ANY];
-    holds(2000, (bound(), bound()), |(low, high)| {
-        let in_f32 = |x: f64| x.abs() <= f32::MAX.into();
-        let valid = in_f32(low) && in_f32(high) && low <= high;
-        let bounds = ResetBounds::new(low, high).ok();
-        let found = bounds.map(|bounds| (bounds.low(), bounds.high()));
-        assert_eq!(found, valid.then_some((low, high)));
     });
 }
 
