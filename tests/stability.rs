@@ -1,5 +1,5 @@
-//! Promise 2, the same bits everywhere: digests, which the program `bits` compares on other targets.
-//! Changing one takes a breaking release.
+//! Promise 2, the same bits everywhere: digests, which the program `bits` compares on other
+//! targets. Changing one takes a breaking release.
 
 use acrobot::arithmetic::{Damped, Micro, Reference};
 use acrobot::numpy::{Pcg64, uniform};

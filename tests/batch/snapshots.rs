@@ -1,5 +1,5 @@
-//! A snapshot of a batch loads into any memory of the right size. An invalid one is rejected with the
-//! reason. `cargo test -p properties` continues from snapshots to the same bits.
+//! A snapshot of a batch loads into any memory of the right size. An invalid one is rejected with
+//! the reason. `cargo test -p properties` continues from snapshots to the same bits.
 
 use std::fmt::Debug;
 
