@@ -23,7 +23,7 @@ pub use gymnasium::{Gymnasium, GymnasiumV0};
 pub use observation::Observation;
 pub use reset_bounds::ResetBounds;
 pub use reset_options::ResetOptions;
-pub use swingup::{DmControl, Swingup, SwingupSparse};
+pub use swingup::Swingup;
 
 use crate::arithmetic::{Arithmetic, Numbers, Real};
 use crate::physics::{Given, Params, State, directions, positions};

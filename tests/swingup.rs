@@ -7,7 +7,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
 use acrobot::render::Figure;
-use acrobot::task::{Swingup, SwingupSparse, Task};
+use acrobot::task::{Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use common::{distance, numbers, text_of};
 
@@ -19,9 +19,9 @@ fn state(numbers: &[f64]) -> State {
 }
 
 /// The largest error of a state, an observation and a reward, over the steps of ten episodes. The
-/// reward is in this column of the recording.
-fn errors<A: Arithmetic, T: Task>(reward: usize) -> [f64; 3] {
-    let mut acrobot = Acrobot::<A, T>::new(0);
+/// reward is 1 where dm_control's sparse reward is.
+fn errors<A: Arithmetic>() -> [f64; 3] {
+    let mut acrobot = Acrobot::<A, Swingup>::new(0);
     let (mut worst, mut count) = ([0.0_f64; 3], 0);
     let text = text_of("tests/data/swingup.txt");
     for line in text.lines().filter(|line| !line.starts_with('#')) {
@@ -29,11 +29,12 @@ fn errors<A: Arithmetic, T: Task>(reward: usize) -> [f64; 3] {
         acrobot.set_state(state(&recorded[..4]).cast()).unwrap();
         let step = acrobot.step_torque(Real::from_f64(2.0 * recorded[4])).unwrap();
         assert!(!step.terminated);
-        let seen = step.observation.as_ref().iter().zip(&recorded[9..15]);
+        assert_eq!(f64::from(u8::from(step.reward == 1.0)), recorded[16]);
+        let seen = step.observation.iter().zip(&recorded[9..15]);
         let errors = [
             distance(acrobot.state().cast(), state(&recorded[5..9])),
             seen.fold(0.0, |most, (x, y)| most.max((f64::from(*x) - y).abs())),
-            (f64::from(step.reward) - recorded[reward]).abs(),
+            (f64::from(step.reward) - recorded[15]).abs(),
         ];
         for (worst, error) in worst.iter_mut().zip(errors) {
             *worst = worst.max(error);
@@ -46,16 +47,12 @@ fn errors<A: Arithmetic, T: Task>(reward: usize) -> [f64; 3] {
 
 #[test]
 fn steps_observations_and_rewards_are_dm_controls() {
-    const DENSE: usize = 15;
-    const SPARSE: usize = 16;
     for ([state, observation, reward], limit) in [
-        (errors::<Damped<Reference>, Swingup>(DENSE), 1e-12),
-        (errors::<Damped<Portable>, Swingup>(DENSE), 1e-12),
-        (errors::<Damped<Host>, Swingup>(DENSE), 1e-12),
-        (errors::<Damped<Fast>, Swingup>(DENSE), 5e-6),
-        (errors::<Damped<Micro>, Swingup>(DENSE), 1e-5),
-        (errors::<Damped<Reference>, SwingupSparse>(SPARSE), 1e-12),
-        (errors::<Damped<Fast>, SwingupSparse>(SPARSE), 5e-6),
+        (errors::<Damped<Reference>>(), 1e-12),
+        (errors::<Damped<Portable>>(), 1e-12),
+        (errors::<Damped<Host>>(), 1e-12),
+        (errors::<Damped<Fast>>(), 5e-6),
+        (errors::<Damped<Micro>>(), 1e-5),
     ] {
         assert!(state < limit, "{state:e}");
         // Observations and rewards are `f32`.
@@ -64,16 +61,42 @@ fn steps_observations_and_rewards_are_dm_controls() {
     }
 }
 
+/// Also within 0.1 mm beyond, where the nearest `f32` is 1. Both links lean to the same side, or to
+/// different sides.
+fn rewards_below_1_beyond_the_target<A: Arithmetic>() {
+    let mut acrobot = Acrobot::<A, Swingup>::new(0);
+    let params = Params { dt: 1e-9, ..Params::<f64>::SWINGUP };
+    acrobot.set_params(params.cast()).unwrap();
+    for index in (-1000..1000).filter(|index: &i32| index.abs() > 20) {
+        let beyond = f64::from(index) * 1e-7;
+        let distance = 0.2 + beyond;
+        for (lean, theta2) in
+            [(2.0 * (distance / 4.0).asin(), 0.0), ((1.0 - distance / 2.0).acos(), -2.0)]
+        {
+            let state = State::from([PI + lean, theta2 * lean, 0.0, 0.0]);
+            acrobot.set_state(state.cast()).unwrap();
+            let reward = acrobot.step(Action::Zero).reward;
+            assert_eq!(reward == 1.0, beyond < 0.0, "{beyond:e} m: {reward}");
+        }
+    }
+}
+
+#[test]
+fn a_reward_of_1_is_the_sparse_one() {
+    rewards_below_1_beyond_the_target::<Damped<Reference>>();
+    rewards_below_1_beyond_the_target::<Damped<Fast>>();
+}
+
 /// Where a link points up, down or aside, a rounding can lead beyond 1. Alone and in a batch.
-fn orientations_within_1<A: Arithmetic, T: Task<Observation = [f32; 6]>>() {
+fn orientations_within_1<A: Arithmetic>() {
     let within = |seen: &[f32; 6]| {
         let [sin1, sin_sum, cos1, cos_sum, ..] = *seen;
         let lengths = [sin1.hypot(cos1), sin_sum.hypot(cos_sum)];
         assert!(lengths.iter().all(|x| (x - 1.0).abs() < 3e-6), "{seen:?}");
         assert!(seen[..4].iter().all(|x| x.abs() <= 1.0), "{seen:?}");
     };
-    let mut acrobot = Acrobot::<A, T>::new(0);
-    let mut batch = VecBatch::<A, T>::new(SeedSequence::new(1), 20_000).unwrap();
+    let mut acrobot = Acrobot::<A, Swingup>::new(0);
+    let mut batch = VecBatch::<A, Swingup>::new(SeedSequence::new(1), 20_000).unwrap();
     for index in 0..batch.len() {
         let drawn = batch.state_of(index).unwrap();
         let aside = f64::from(index as u32 % 8) * (PI / 2.0) - drawn.theta1.to_f64();
@@ -84,18 +107,17 @@ fn orientations_within_1<A: Arithmetic, T: Task<Observation = [f32; 6]>>() {
         within(&acrobot.observation());
         within(&acrobot.step(Action::Zero).observation);
     }
-    // No step of the batch: those of six arithmetics take a minute to compile.
+    // No step of the batch: those of five arithmetics take a minute to compile.
     batch.observations().iter().for_each(within);
 }
 
 #[test]
 fn orientations_are_within_1() {
-    orientations_within_1::<Damped<Reference>, Swingup>();
-    orientations_within_1::<Damped<Host>, Swingup>();
-    orientations_within_1::<Damped<Portable>, Swingup>();
-    orientations_within_1::<Damped<Fast>, Swingup>();
-    orientations_within_1::<Damped<Micro>, Swingup>();
-    orientations_within_1::<Damped<Fast>, SwingupSparse>();
+    orientations_within_1::<Damped<Reference>>();
+    orientations_within_1::<Damped<Host>>();
+    orientations_within_1::<Damped<Portable>>();
+    orientations_within_1::<Damped<Fast>>();
+    orientations_within_1::<Damped<Micro>>();
 }
 
 /// With lengths so large that the distance from the target overflows, too.

@@ -1,4 +1,4 @@
-//! dm_control's swing-ups.
+//! dm_control's swing-up.
 
 use core::num::NonZeroU32;
 
@@ -12,18 +12,14 @@ use crate::physics::{Params, State};
 
 /// dm_control's `acrobot-swingup`: swing up from anywhere and stay up. The reward is 1 up to
 /// 0.2 m from the target, 2 m above the fixed joint, and falls to 0.1 at 1.2 m.
-pub type Swingup = DmControl<false>;
-
-/// dm_control's `acrobot-swingup_sparse`: as [`Swingup`], with a reward of 0 beyond 0.2 m.
-pub type SwingupSparse = DmControl<true>;
-
-/// [`Swingup`] or [`SwingupSparse`].
+///
+/// Beyond 0.2 m it is below 1. So `reward == 1.0` is the reward of `acrobot-swingup_sparse`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct DmControl<const SPARSE: bool>;
+pub struct Swingup;
 
-impl<const SPARSE: bool> Task for DmControl<SPARSE> {
-    const NAME: &'static str = if SPARSE { "swingup_sparse" } else { "swingup" };
+impl Task for Swingup {
+    const NAME: &'static str = "swingup";
     const DEFAULT: Self = Self;
     const MAX_STEPS: NonZeroU32 = NonZeroU32::new(1000).unwrap();
     const RESET_BOUNDS: ResetBounds = ResetBounds::ANYWHERE;
@@ -61,26 +57,25 @@ impl<const SPARSE: bool> Task for DmControl<SPARSE> {
         _: V,
         _: V::Mask,
     ) -> V::Single {
-        tolerance::<A::Scalar, V>(seen, params, SPARSE).to_f32()
+        tolerance::<A::Scalar, V>(seen, params).to_f32()
     }
 }
 
 /// dm_control's `tolerance` of the distance from the tip to the target, 0.1^(d²) at d metres from
 /// its edge.
 #[inline(always)]
-fn tolerance<S: Real, V: Numbers<S>>(seen: &Seen<V>, params: &Params<V>, is_sparse: bool) -> V {
+fn tolerance<S: Real, V: Numbers<S>>(seen: &Seen<V>, params: &Params<V>) -> V {
     const TARGET: f64 = 2.0;
     const RADIUS: f64 = 0.2;
+    // Up to 0.1 mm beyond, the nearest `f32` would be 1.
+    const BELOW_1: f64 = 1.0 - f32::EPSILON as f64 / 2.0;
     let number = |x| V::splat(S::from_f64(x));
     let [_, [x, y]] = seen.positions(params);
     let below = number(TARGET) - y;
     let distance = (x * x + below * below).map(Real::sqrt);
     let beyond = distance - number(RADIUS);
-    let outside = if is_sparse {
-        number(0.0)
-    } else {
-        exp2(beyond * beyond * number(-core::f64::consts::LOG2_10))
-    };
+    let outside = exp2(beyond * beyond * number(-core::f64::consts::LOG2_10));
+    let outside = outside.saturate(number(BELOW_1));
     distance.select_within(S::from_f64(RADIUS), number(1.0), outside)
 }
 
