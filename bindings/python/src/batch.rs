@@ -176,7 +176,7 @@ impl Batch {
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
         let task = match engine {
-            Engine::Fast(_) | Engine::Swingup(_) | Engine::SwingupSparse(_) => 16_384,
+            Engine::Fast(_) | Engine::Swingup(_) => 16_384,
             _ => 1024,
         };
         let tasks = len.div_ceil(task);

@@ -1,9 +1,9 @@
-//! A batch of one of seven pairs of arithmetic and task.
+//! A batch of one of five pairs of arithmetic and task.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::task::{Draw, Draws, Gymnasium, Swingup, SwingupSparse, Task};
+use acrobot::task::{Draw, Draws, Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -13,8 +13,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, torque_of,
-    unknown, with,
+    InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, torque_of, with,
 };
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
@@ -46,23 +45,18 @@ pub enum Engine {
     /// Computes as Gymnasium does.
     Host(Many<Host>),
     Swingup(Many<Damped<Fast>, Swingup>),
-    SwingupSparse(Many<Damped<Fast>, SwingupSparse>),
     Reference(Many<Reference>),
     ReferenceSwingup(Many<Damped<Reference>, Swingup>),
-    ReferenceSwingupSparse(Many<Damped<Reference>, SwingupSparse>),
 }
 
 impl Engine {
     pub fn new(name: &str, len: usize, seed: SeedSequence) -> PyResult<Self> {
         Ok(match name {
-            "acrobot" => Self::Fast(Many::new(len, seed)?),
             "gymnasium" => Self::Host(Many::new(len, seed)?),
             "swingup" => Self::Swingup(Many::new(len, seed)?),
-            "swingup_sparse" => Self::SwingupSparse(Many::new(len, seed)?),
             "acrobot_float64" => Self::Reference(Many::new(len, seed)?),
             "swingup_float64" => Self::ReferenceSwingup(Many::new(len, seed)?),
-            "swingup_sparse_float64" => Self::ReferenceSwingupSparse(Many::new(len, seed)?),
-            other => return Err(unknown("engine", "the name of an engine", other)),
+            _ => Self::Fast(Many::new(len, seed)?),
         })
     }
 }
@@ -74,10 +68,8 @@ macro_rules! with_batch {
             $crate::engine::Engine::Fast($many) => $result,
             $crate::engine::Engine::Host($many) => $result,
             $crate::engine::Engine::Swingup($many) => $result,
-            $crate::engine::Engine::SwingupSparse($many) => $result,
             $crate::engine::Engine::Reference($many) => $result,
             $crate::engine::Engine::ReferenceSwingup($many) => $result,
-            $crate::engine::Engine::ReferenceSwingupSparse($many) => $result,
         }
     };
 }
@@ -155,7 +147,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
 
     /// Sets a parameter that each reset draws.
     pub fn set_drawn(&mut self, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
-        let kind: String = drawn.getattr("kind")?.extract()?;
+        let kind = drawn.get_type().name()?.to_string();
         let numbers: &[&str] = match kind.as_str() {
             "Normal" => &["low", "high", "mean", "std"],
             _ => &["low", "high"],

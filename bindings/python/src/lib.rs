@@ -17,7 +17,7 @@ use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::pyclass::boolean_struct::False;
-use pyo3::types::{PyBool, PyByteArray, PyBytes};
+use pyo3::types::PyBytes;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -174,39 +174,19 @@ fn must_be(name: impl Display, rule: impl Display, got: impl Display) -> String 
     format!("{name} must be {rule}, got {got}")
 }
 
-/// Converts a parameter from Python, or raises a `TypeError` that names it. Bools are no numbers,
-/// and bytes no sequence.
+/// Converts a parameter from Python, or raises a `TypeError` that names it.
 fn convert<'a, 'py, T: FromPyObject<'a, 'py>>(
     name: impl Display,
     rule: &str,
     value: &'a Bound<'py, PyAny>,
 ) -> PyResult<T> {
-    let wrong = || PyTypeError::new_err(must_be(&name, rule, shown(value)));
-    let converted = value.extract().map_err(|_| wrong())?;
-    // What was converted has an end, which an iterator need not have.
-    let elements = value.try_iter().into_iter().flatten().flatten();
-    let is_bytes = value.is_instance_of::<PyBytes>() || value.is_instance_of::<PyByteArray>();
-    if is_bytes || elements.chain([value.clone()]).any(|each| is_bool(&each)) {
-        return Err(wrong());
-    }
-    Ok(converted)
-}
-
-/// Whether a value is Python's bool, NumPy's, or an array of these.
-fn is_bool(value: &Bound<'_, PyAny>) -> bool {
-    let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind")?.extract::<char>());
-    value.is_instance_of::<PyBool>() || kind.is_ok_and(|kind| kind == 'b')
+    value.extract().map_err(|_| PyTypeError::new_err(must_be(name, rule, shown(value))))
 }
 
 /// A value in an error message.
 fn shown(value: &Bound<'_, PyAny>) -> String {
     let text = value.repr().map(|text| text.to_string());
     text.unwrap_or_else(|_| format!("{}", value.get_type()))
-}
-
-/// The error for a text from Python that is not one of the names in `rule`.
-fn unknown(name: impl Display, rule: &str, got: &str) -> PyErr {
-    PyValueError::new_err(must_be(name, rule, format_args!("{got:?}")))
 }
 
 /// The parameters with one of them changed.
@@ -221,11 +201,11 @@ fn with(mut params: Params, name: &Name<'_>, value: &Bound<'_, PyAny>) -> PyResu
             params.torques = convert(name, "a sequence of 3 numbers", value)?;
         }
         "book_or_nips" => {
-            let rule = r#""book" or "nips""#;
+            let rule = "'book' or 'nips'";
             params.dynamics = match convert(name, rule, value)? {
                 "book" => Dynamics::Book,
                 "nips" => Dynamics::Nips,
-                other => return Err(unknown(name, rule, other)),
+                _ => return Err(PyValueError::new_err(must_be(name, rule, shown(value)))),
             }
         }
         _ => {
@@ -246,7 +226,10 @@ fn render<'py>(
     let mode = match mode {
         "rgb_array" => RenderMode::RgbArray,
         "ansi" => RenderMode::Ansi,
-        other => return Err(unknown("render_mode", r#""rgb_array" or "ansi""#, other)),
+        _ => {
+            let message = must_be("render_mode", "'rgb_array' or 'ansi'", format_args!("'{mode}'"));
+            return Err(PyValueError::new_err(message));
+        }
     };
     let mut env = AcrobotEnv::new(Acrobot::<Damped<Host>>::new(0), mode);
     env.set_params(params).map_err(rejected)?;
@@ -263,29 +246,15 @@ fn render<'py>(
     }
 }
 
-/// The version of this package's snapshots. Those of the crate, inside, have their own.
-const VERSION: u32 = 4;
-
-/// Serializes a snapshot, for pickle.
+/// Serializes a snapshot, for pickle. The crate's snapshots inside have a version.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {
-    let bytes = postcard::to_stdvec(&(VERSION, snapshot));
+    let bytes = postcard::to_stdvec(snapshot);
     let bytes = bytes.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// Deserializes a snapshot. Rejects other versions, and bytes after the end.
+/// Deserializes a snapshot.
 fn load<T: DeserializeOwned>(bytes: &[u8]) -> PyResult<T> {
-    let damaged = |error| PyValueError::new_err(format!("the snapshot is damaged: {error}"));
-    let (version, rest): (u32, _) = postcard::take_from_bytes(bytes).map_err(damaged)?;
-    if version != VERSION {
-        let message = must_be("the snapshot's version", VERSION, version);
-        return Err(PyValueError::new_err(message));
-    }
-    let (snapshot, rest) = postcard::take_from_bytes(rest).map_err(damaged)?;
-    if !rest.is_empty() {
-        let count = rest.len();
-        let message = format!("the snapshot must have no bytes after its end, got {count}");
-        return Err(PyValueError::new_err(message));
-    }
-    Ok(snapshot)
+    postcard::from_bytes(bytes)
+        .map_err(|error| PyValueError::new_err(format!("the snapshot is damaged: {error}")))
 }

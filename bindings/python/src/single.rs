@@ -1,7 +1,7 @@
 //! The single environments: one acrobot, bit-identical to Gymnasium's, or dm_control's swing-up.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host};
-use acrobot::task::{Gymnasium, Swingup, SwingupSparse, Task};
+use acrobot::task::{Gymnasium, Swingup, Task};
 use acrobot::{Portable, State, Step};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyValueError};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     InvalidAction, Name, Params, alone, convert, invalid, load, must_be, out_of_range, rejected,
-    render, save, shown, torque_of, unknown, with,
+    render, save, shown, torque_of, with,
 };
 
 pyo3::import_exception!(gymnasium.error, ResetNeeded);
@@ -29,7 +29,6 @@ pub struct Acrobot {
 enum One {
     Acrobot(acrobot::Acrobot<Host>),
     Swingup(acrobot::Acrobot<Damped<Portable>, Swingup>),
-    SwingupSparse(acrobot::Acrobot<Damped<Portable>, SwingupSparse>),
 }
 
 /// Does something with the acrobot, whatever its task.
@@ -38,19 +37,16 @@ macro_rules! with_one {
         match $one {
             One::Acrobot($acrobot) => $result,
             One::Swingup($acrobot) => $result,
-            One::SwingupSparse($acrobot) => $result,
         }
     };
 }
 
 impl One {
-    fn new(task: &str) -> PyResult<Self> {
-        Ok(match task {
-            "acrobot" => Self::Acrobot(acrobot::Acrobot::new(0)),
-            "swingup" => Self::Swingup(acrobot::Acrobot::new(0)),
-            "swingup_sparse" => Self::SwingupSparse(acrobot::Acrobot::new(0)),
-            other => return Err(unknown("task", "the name of a task", other)),
-        })
+    fn new(task: &str) -> Self {
+        match task {
+            Swingup::NAME => Self::Swingup(acrobot::Acrobot::new(0)),
+            _ => Self::Acrobot(acrobot::Acrobot::new(0)),
+        }
     }
 
     /// The name of the task.
@@ -123,20 +119,18 @@ impl Inner {
 impl Acrobot {
     #[new]
     #[pyo3(signature = (angles = false, continuous = false, task = "acrobot"))]
-    fn new(angles: bool, continuous: bool, task: &str) -> PyResult<Self> {
-        let acrobot = One::new(task)?;
-        Ok(Self {
-            inner: Inner {
-                angles,
-                continuous,
-                torques: acrobot.params().torques.into(),
-                acrobot,
-                noise: 0.0,
-                started: false,
-                single: false,
-            },
-            lent: None,
-        })
+    fn new(angles: bool, continuous: bool, task: &str) -> Self {
+        let acrobot = One::new(task);
+        let inner = Inner {
+            angles,
+            continuous,
+            torques: acrobot.params().torques.into(),
+            acrobot,
+            noise: 0.0,
+            started: false,
+            single: false,
+        };
+        Self { inner, lent: None }
     }
 
     fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {

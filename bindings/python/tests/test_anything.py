@@ -149,7 +149,7 @@ def test_a_single_environment(kind, mode, sequence):
 def test_a_vector_environment(num_envs, limit, autoreset, copy, gymnasium_episodes, sequence):
     arguments = (num_envs, limit, "ansi", autoreset, copy)
     if gymnasium_episodes is None:
-        play(acrobot_rs.AcrobotSwingupVectorEnv(*arguments), sequence)
+        play(acrobot_rs.AcrobotSwingupVectorEnv(num_envs, limit, copy=copy), sequence)
     else:
         play(acrobot_rs.AcrobotVectorEnv(*arguments, gymnasium_episodes), sequence)
 

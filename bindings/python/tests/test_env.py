@@ -1,18 +1,14 @@
 """The single environment passes Gymnasium's checks, and rejects what Gymnasium's rejects."""
 
-import abc
-import collections
 import copy
-import itertools
 import pickle
-import re
 import sys
 import unittest.mock
 
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env
+from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env, Uniform
 from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
 from vectors import CONTINUOUS, KINDS, SWINGUPS, V1, rejects
@@ -87,7 +83,7 @@ def test_pictures(env):
         unknown = gymnasium.make(V1, render_mode="text")
     assert unknown.render_mode == "text"
     unknown.reset()
-    with pytest.raises(ValueError, match='render_mode must be .*, got "text"'):
+    with pytest.raises(ValueError, match="render_mode must be .*, got 'text'"):
         unknown.unwrapped.render()
 
 
@@ -123,69 +119,47 @@ def test_a_window_shows_each_reset_and_step(monkeypatch):
     assert pygame.quit.called and env.unwrapped.screen is None and not env.unwrapped.isopen
 
 
-#: By the kind of environment: the message and invalid actions.
-INVALID = {
-    AcrobotEnv: ("action must be an integer from 0 to 3, got ", [
-        4, -1, 256, 2**70, np.array([1]), np.array([1, 2]), [1], np.True_, np.array(True),
-        np.timedelta64(1)]),
-    AcrobotContinuousEnv: (r"action must be a torque in N m, as an array of shape \(1,\), got ", [
-        1, np.float32(1.0), ["1"], [[1.0]], [None], [np.nan], np.float32([np.nan]),
-        np.zeros((1, 1), np.float32), np.zeros(2, np.float32), np.zeros(0, np.float32),
-        np.zeros((), np.float32), {0: 0.5}, collections.UserDict({0: 0.5}), [True], [1j],
-        np.array([0.5], object), np.array([1], "m8[s]"), [10**400], [[1], [2, 3]]]),
-}  # fmt: skip
-NEITHER = (1.0, "1", None, b"\1", bytearray(b"\1"), {1}, {1: 1}, 1j, iter([0.5]))
-
-
 @pytest.mark.parametrize(
-    ("kind", "action"), [(kind, each) for kind in INVALID for each in (*INVALID[kind][1], *NEITHER)]
-)
-def test_invalid_actions_are_rejected(kind, action):
+    ("kind", "message", "actions"),
+    [
+        (AcrobotEnv, "action must be an integer from 0 to 3, got ",
+         [4, -1, 2**70, np.array([1]), [1], np.timedelta64(1)]),
+        (AcrobotContinuousEnv, r"action must be a torque in N m, as an array of shape \(1,\), got ",
+         [1, np.float32(1.0), ["1"], [[1.0]], [None], [np.nan], np.float32([np.nan]), [1j],
+          np.zeros(2, np.float32), np.zeros((), np.float32), [10**400], [[1], [2, 3]]]),
+    ],
+)  # fmt: skip
+def test_invalid_actions_are_rejected(kind, message, actions):
     env = kind(AVAIL_TORQUE=[-1, 0, 1, 2], torque_noise_max=0.5)
     env.reset(seed=1)
-    with rejects(env, InvalidAction, INVALID[kind][0]):
-        env.step(action)
-
-
-@pytest.mark.parametrize("action", [2, np.int64(2), np.uint8(2), np.array(2)])
-def test_actions_can_be_integers_of_any_type(env, action):
-    env.step(action)
-
-
-NUMBERS = set(AcrobotEnv._NAMES) - {"AVAIL_TORQUE", "book_or_nips"}
+    for action in (*actions, 1.0, "1", None, b"\1", {1: 1}):
+        with rejects(env, InvalidAction, message):
+            env.step(action)
+    if kind is AcrobotEnv:
+        for action in (2, np.int64(2), np.uint8(2), np.array(2)):
+            env.step(action)
 
 
 @pytest.mark.parametrize(
     ("error", "name", "values"),
     [
-        (ValueError, "MAX_VEL_2", (1e300,)),
         (ValueError, "AVAIL_TORQUE", ([],)),
         (ValueError, "book_or_nips", ("paper",)),
-        # A set has no order, and an iterator may have no end.
-        (TypeError, "AVAIL_TORQUE", ([-1.0, True], np.ones(3, bool), b"012", bytearray(b"012"))),
-        (TypeError, "AVAIL_TORQUE", (None, {-1.0, 0.0, 1.0}, itertools.repeat(0.0, 10**6))),
+        (TypeError, "AVAIL_TORQUE", (None, {-1.0, 0.0, 1.0}, ["1"])),
         (TypeError, "book_or_nips", (1, None)),
-        *((TypeError, name, ("two", None, [1.0], 1j, True, np.array(True))) for name in NUMBERS),
+        (TypeError, "LINK_MASS_1", ("two", None, [1.0], 1j, Uniform(1.0, 2.0))),
     ],
 )
 def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error):
     for value in values:
         with rejects(env, error, f"^{name}.* must "):
             setattr(env, name, value)
-        with pytest.raises(error, match=f"^{name}.* must "):
-            type("Changed", (AcrobotEnv,), {name: value})
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [*(({name: value}, f"{name} must be a number, got ") for name in ("low", "high")
-       for value in ("x", "0.05", None, True, [0.05])),
-     ({"low": -1e300}, "low"),
-     ({"reset_mask": 0}, r"options must be among \['low', 'high', 'state'\], got 'reset_mask'")],
-)  # fmt: skip
-def test_invalid_options_are_rejected(env, options, message):
-    with rejects(env, ValueError, message):
-        env.reset(seed=1, options=options)
+def test_invalid_options_are_rejected(env):
+    for value in ("x", None, [0.05]):
+        with rejects(env, ValueError, "low must be a number, got "):
+            env.reset(seed=1, options={"low": value})
 
 
 def test_the_first_step_needs_a_reset():
@@ -223,62 +197,29 @@ def test_the_state_can_be_set_from_any_four_numbers(env):
     assert env.state.dtype == np.float32 and list(env.state) == [0.0, 2.0, 4.0, 6.0]
     env.state = (1, 2, 3, 4)
     assert env.state.dtype == np.float64 and list(env.state) == [1.0, 2.0, 3.0, 4.0]
-    for state in ([1, 2, 3], None, [True] * 4, [0.0, True, 0.0, 0.0]):
+    for state in ([1, 2, 3], None, [True] * 4):
         with pytest.raises(ValueError, match="state must be .*four .*numbers, got "):
             env.state = state
     assert list(env.state) == [1.0, 2.0, 3.0, 4.0]
 
 
-MEANT = {"LINK_MAS_1": "LINK_MASS_1", "link_moi": "LINK_MOI", "Dt": "dt"}
-UNUSED = "_dsdt", "_terminal", "_get_ob", "rk4", "wrap", "bound", "SCREEN_DIM"
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "error", "message"),
-    [
-        *((name, 2.0, AttributeError, f"; did you mean {meant}?") for name, meant in MEANT.items()),
-        *((name, lambda self: None, TypeError, " would have no effect on ") for name in UNUSED),
-    ],
-)
-def test_what_would_have_no_effect_is_rejected(env, name, value, error, message):
-    """Misspelt parameters, and methods that are not called."""
-    own = type("Own", (AcrobotEnv,), {})()
-    changes = (
-        lambda: setattr(env, name, value),
-        lambda: setattr(own, name, value),
-        lambda: make(V1).set_wrapper_attr(name, value),
-        lambda: type("Changed", (AcrobotEnv,), {name: value}),
-        lambda: type("Changed", (type("Mixin", (), {name: value}), AcrobotEnv), {}),
-        lambda: unittest.mock.patch.object(AcrobotEnv, name, value, create=True)(make)(V1),
-    )
-    for change in changes:
-        with pytest.raises(error, match=f"{name}{re.escape(message)}"):
-            change()
-    own.curriculum_level = 3
-    env._LINK_MAS_1 = 2.0
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_unknown_name_is_rejected(kind):
-    env, name = kind(), kind.__name__
-    known = {"mass_1": "did you mean LINK_MASS_1?", "MAX_TORQUE": "did you mean AVAIL_TORQUE?"}
-    for unknown, hint in (known | {"tau": "it has "}).items():
-        message = re.escape(f"{name} has no parameter {unknown}; {hint}")
-        with pytest.raises(AttributeError, match=message):
-            setattr(env, unknown, 2.0)
+    env = kind()
+    with pytest.raises(AttributeError, match="no attribute 'mass_1'; .*, LINK_MASS_1, "):
+        env.mass_1 = 2.0
     # In Python's words, which torchrl recognises.
-    words = rf"{name}.__init__\(\) got an unexpected keyword argument 'rendermode'"
-    with pytest.raises(TypeError, match=rf"{words}; did you mean render_mode\?"):
-        kind(rendermode="ansi")
-    # What Gymnasium and users set.
+    words = rf"{kind.__name__}.__init__\(\) got an unexpected keyword argument 'mass_1'"
+    with pytest.raises(TypeError, match=f"{words}; .*, LINK_MASS_1, "):
+        kind(mass_1=2.0)
+    # What Gymnasium and users set, also in their own classes.
     env.np_random, env.render_mode = np.random.default_rng(1), "ansi"
     env.metadata, env.spec = {**env.metadata}, None
+    type("Own", (kind,), {})().curriculum_level = 3
 
 
 def test_a_wrapper_sets_a_parameter():
     env = gymnasium.make(V1)
-    with pytest.raises(ValueError, match="^LINK_MASS_1 must be finite and above 0 kg, got -1"):
-        env.set_wrapper_attr("LINK_MASS_1", -1)
     env.set_wrapper_attr("LINK_MASS_1", 5.0)
     assert env.unwrapped.LINK_MASS_1 == 5.0
 
@@ -286,38 +227,29 @@ def test_a_wrapper_sets_a_parameter():
 def test_spaces_follow_the_parameters():
     env, samples = AcrobotContinuousEnv(), []
     for _ in range(2):
-        env.action_space = before = AcrobotContinuousEnv().action_space
-        env.action_space.seed(1)
+        env.AVAIL_TORQUE = [-1.0, 0.0, 1.0]
+        before = env.action_space
+        before.seed(1)
         env.AVAIL_TORQUE, env.LINK_MASS_1 = [1.0, 0.0, -1.0], 2.0
         assert env.action_space is before, "and its generator"
         env.AVAIL_TORQUE = [-3.0, 2.0]
         assert env.action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
         samples.append(env.action_space.sample())
-        del env.AVAIL_TORQUE
     assert samples[0] == samples[1], "a seeded space is followed by a seeded one"
     env.AVAIL_TORQUE = [-1e300, 0.0, 3.402823466385289e38]  # beyond float32, also by rounding
     assert -env.action_space.low == env.action_space.high == np.finfo(np.float32).max
-    env.observation_space = mine = gymnasium.spaces.Box(-1.0, 1.0, (6,))
-    env.MAX_VEL_2 = 4.0
-    assert env.observation_space is mine
 
 
 def test_a_new_environment_copies_its_class_s_parameters():
-    class Heavy(AcrobotEnv, abc.ABC):
+    class Heavy(AcrobotEnv):
         LINK_MASS_1 = 3.0
 
-    heavy, plain, restored = Heavy(), AcrobotEnv(), Heavy()
-    restored.LINK_MASS_1 = 4.0
-    del restored.LINK_MASS_1
+    heavy, plain = Heavy(), AcrobotEnv()
     with unittest.mock.patch.object(Heavy, "LINK_MASS_1", 2.0):
         later = Heavy()
     plain.LINK_MASS_1 = 4.0
-    with unittest.mock.patch.object(plain, "LINK_MASS_1", 5.0):
-        patched = copy.copy(plain)
-    masses = {heavy: 3.0, later: 2.0, plain: 4.0, patched: 5.0, restored: 3.0}
-    for env, mass in (masses | {Heavy(LINK_MASS_1=6.0): 6.0}).items():
-        other = AcrobotEnv()
-        other.LINK_MASS_1 = mass
+    for env, mass in {heavy: 3.0, later: 2.0, plain: 4.0, Heavy(LINK_MASS_1=6.0): 6.0}.items():
+        other = AcrobotEnv(LINK_MASS_1=mass)
         assert env.LINK_MASS_1 == mass
         for each in (env, other):
             each.state = [1.0, 1.0, 0.0, 0.0]
@@ -333,10 +265,8 @@ def test_values_cannot_change_in_place(env):
     mass, torques = np.array(2.0), [-2.0, 0.0, 2.0]
     env.LINK_MASS_1 = mass
     env.AVAIL_TORQUE = torques
-    changed = type("Changed", (AcrobotEnv,), {"LINK_MASS_1": mass, "AVAIL_TORQUE": torques})
     mass[...], torques[0] = 3.0, 0.0
-    for each in (env, changed, changed()):
-        assert each.LINK_MASS_1 == 2.0 and each.AVAIL_TORQUE == (-2.0, 0.0, 2.0)
+    assert env.LINK_MASS_1 == 2.0 and env.AVAIL_TORQUE == (-2.0, 0.0, 2.0)
 
 
 @pytest.mark.parametrize("torques", [[-1.0, 0.0, 1.0], [0.5, -3.0, 2.0]])

@@ -13,7 +13,6 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from acrobot_rs import policy
-from vectors import NO_NAMES
 
 RNG = np.random.default_rng(7)
 
@@ -177,8 +176,7 @@ def test_a_file_acts_as_its_model(tmp_path):
     torques, loaded = model.predict(seen, deterministic=True)[0], policy.load(tmp_path / "p")
     np.testing.assert_allclose(loaded.act(seen), 2 * torques, rtol=1e-5, atol=1e-5)
     assert (abs(loaded.act(10 * seen)) == 2).any() and loaded.act(seen[0]).shape == (1,)
-    others = "123456", ["1"] * 6, np.ones(6, bool), [True] + [0.0] * 5, {}, [[1.0], [1.0] * 6], None
-    for wrong in seen[:, :5], np.full(6, np.nan), 1.0, np.zeros((1, 1, 6)), [1e39] * 6, *others:
+    for wrong in seen[:, :5], np.full(6, np.nan), np.zeros((1, 1, 6)), [1e39] * 6, ["1"] * 6:
         with pytest.raises(ValueError, match="^observation must be finite numbers of shape"):
             loaded.act(wrong)
 
@@ -251,12 +249,9 @@ LIMIT = "torque_limit must be "
         (ValueError, rf"{LIMIT}.*: \[1.0, 2.0\]", swingup_actor([[-1, 0, 1], [-2, 0, 2]]), {}),
         (ValueError, rf"{LIMIT}.*: \[-5.0, 5.0\]", swingup_actor([5, 5, 5]), {}),
         *((ValueError, f"{LIMIT}finite and above 0 N m", swingup_actor(), {"torque_limit": limit})
-          for limit in (np.nan, np.inf, 1e39, 10**400, 1e-50, -2.0)),
-        (TypeError, f"{LIMIT}a number of N m, got '1'", swingup_actor(), {"torque_limit": "1"}),
-        (TypeError, f"{LIMIT}a number of N m, got True", swingup_actor(), {"torque_limit": True}),
+          for limit in (np.nan, 1e39, 1e-50, -2.0)),
         *((ValueError, "observations must be .*, got", dqn(Linear(6, 3)), {"observations": seen})
-          for seen in (np.zeros((0, 6)), np.zeros((5, 4)), np.zeros(6), np.full((3, 6), np.nan),
-                       np.ones((3, 6), bool), [["1"] * 6])),
+          for seen in (np.zeros((0, 6)), np.zeros((5, 4)), np.full((3, 6), np.nan))),
         (ValueError, "bounds of the action space must be .*opposite, got -1.0 and 2.0",
          Model("ppo", [Linear(6, 1)], gym.spaces.Box(-1, 2, (1,))), {}),
     ],
@@ -270,14 +265,12 @@ def test_other_models_are_rejected(error, message, model, arguments, tmp_path):
 @pytest.mark.parametrize(
     ("message", "outputs", "weight", "activation", "limit"),
     [
-        *(("the activation of layer 0 must be one of", 3, 1.0, each, None)
-          for each in ("elu", *NO_NAMES)),
-        *(("the weights of layer 0 must be numbers, got ", 3, each, "none", None)
-          for each in (True, "1")),
-        *(("numbers of layer 0 must be finite", 3, each, "none", None) for each in (np.nan, 1e300)),
+        ("the activation of layer 0 must be one of", 3, 1.0, "elu", None),
+        ("the weights of layer 0 must be numbers, got ", 3, "1", "none", None),
+        ("numbers of layer 0 must be finite", 3, 1e300, "none", None),
         (f"{LIMIT}finite and above 0 N m", 1, 1.0, "none", -1),
     ],
-)  # fmt: skip
+)
 def test_other_layers_are_rejected(message, outputs, weight, activation, limit, tmp_path):
     layer = np.full((outputs, 6), weight), np.ones(outputs), activation
     for call in lambda *arguments: policy.write(tmp_path / "p", *arguments), policy.Policy:

@@ -53,11 +53,10 @@ def play(envs, steps):
     return played
 
 
-PROTOCOLS = range(pickle.HIGHEST_PROTOCOL + 1)
 AGAIN = [
     copy.copy,
     copy.deepcopy,
-    *(lambda env, p=p: pickle.loads(pickle.dumps(env, p)) for p in PROTOCOLS),
+    *(lambda env, p=p: pickle.loads(pickle.dumps(env, p)) for p in (0, pickle.HIGHEST_PROTOCOL)),
 ]
 
 
@@ -86,8 +85,6 @@ DAMAGED = "the snapshot is damaged"
     [
         (lambda good: b"", DAMAGED),
         (lambda good: good[:-1], DAMAGED),
-        (lambda good: good + b"\0", "the snapshot must have no bytes after its end, got 1"),
-        (lambda good: b"\2" + good[1:], "the snapshot's version must be 4, got 2"),
         (lambda good: good.replace(number(0.25), NAN), DAMAGED),
         (lambda good: good.replace(MINE, b"\0"), "AVAIL_TORQUE must be one or more"),
         (lambda good: good.replace(MINE, MINE[:-8] + NAN), r"AVAIL_TORQUE\[2\] must be a finite"),

@@ -15,7 +15,6 @@ from acrobot_rs import LogUniform, Normal, Uniform
 env = acrobot_rs.AcrobotEnv(LINK_MASS_1=2, AVAIL_TORQUE=[-1, 1], book_or_nips="nips")
 env.state = [0.0, 0.1, 0.2, 0.3]
 env.dt, env.AVAIL_TORQUE = env.dt / 2, np.array([-1.0, 1.0])
-acrobot_rs.AcrobotEnv.dt = 0.1
 masses = [1.0, 2.0]
 envs = acrobot_rs.AcrobotContinuousVectorEnv(2, None, LINK_MASS_1=masses, gravity=Uniform(9, 10))
 envs.AVAIL_TORQUE = Uniform([-2, 0, 1], [-1, 0, 2])
@@ -43,11 +42,9 @@ env.dt = "fast"
 env.dt = acrobot_rs.Uniform(0.1, 0.2)
 env.LINK_MAS_1 = 1.0
 print(env._terminal)
-acrobot_rs.AcrobotEnv(frameskip=4)
-acrobot_rs.AcrobotVectorEnv(2, dt="fast")
+acrobot_rs.AcrobotEnv(dt=None)
 acrobot_rs.AcrobotVectorEnv(2).gravity = None
-acrobot_rs.AcrobotSwingupEnv(FRICTION=0.1)
-acrobot_rs.AcrobotSwingupVectorEnv(2, FRICTION_1="much")
+acrobot_rs.AcrobotSwingupEnv().FRICTION_1 = "much"
 """
 
 

@@ -1,24 +1,20 @@
 """The vector environment is used as SyncVectorEnv is."""
 
-import collections
 import contextlib
-import copy
 import multiprocessing
 import pickle
-import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotEnv, AcrobotSwingupVectorEnv
-from acrobot_rs import AcrobotVectorEnv, Uniform
+from acrobot_rs import AcrobotVectorEnv
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from gymnasium.vector import AutoresetMode
-from vectors import NO_NAMES, assert_equal, assert_resets_equal, different, make_vec, pair, rejects
+from vectors import assert_equal, assert_resets_equal, different, make_vec, pair, rejects
 
 
 def test_attributes_and_types_are_those_of_sync_vector_env():
@@ -29,9 +25,6 @@ def test_attributes_and_types_are_those_of_sync_vector_env():
         assert getattr(ours, name) == getattr(theirs, name)
     assert repr(ours) == "AcrobotVectorEnv(acrobot_rs/Acrobot-v1, num_envs=5)"
     assert ours.unwrapped is ours and ours.spec.max_episode_steps == 500
-    for name in ("max_episode_steps", "num_envs", "copy", "autoreset_mode"):
-        with pytest.raises(AttributeError):  # an assignment would have no effect
-            setattr(ours, name, getattr(ours, name))
     for mode in AutoresetMode:
         envs = make_vec(5, autoreset_mode=mode)
         assert envs.metadata["autoreset_mode"] is mode
@@ -57,38 +50,29 @@ def test_observations_are_copies_or_one_array():
             assert (one != other).any() == copies
 
 
-#: `test_env.py` tries what is no array of numbers.
-INVALID = {
-    AcrobotVectorEnv: [
-        [0, 1, 2, 3], [0, 0, 0, -1], [0, 0, 256, 0], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]],
-        [0.0, 1.0, 2.0, 0.0], 1, [True] * 4, [0, 1, np.True_, 0],
-        collections.UserList([False, 1, 2, 0]),
-        *(np.array([2, number, 0, number], np.uint64) for number in (2**64 - 1, 2**63, 3)),
-        b"\0\1\2\0", np.zeros((4, 1), np.float32)],
-    AcrobotContinuousVectorEnv: [
-        [[0.5]], [0.5] * 4, [[0.5, 0.5]] * 4, [[np.nan], [0.0], [0.0], [0.0]], [["0"]] * 4,
-        [[True]] * 4, [[0.5], [True], [0.5], [0.5]], [[1j]] * 4, np.zeros(4, np.int64),
-        np.zeros(4, np.float32), np.zeros((4, 1), object)],
-}  # fmt: skip
-
-
 @pytest.mark.parametrize(
-    ("kind", "actions"), [(kind, each) for kind in INVALID for each in INVALID[kind]]
-)
+    ("kind", "actions"),
+    [
+        (AcrobotVectorEnv,
+         [[0, 1, 2, 3], [0, 0, 0, -1], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]],
+          [0.0, 1.0, 2.0, 0.0], 1, [True] * 4, b"\0\1\2\0"]),
+        (AcrobotContinuousVectorEnv,
+         [[[0.5]], [0.5] * 4, [[0.5, 0.5]] * 4, [[np.nan], [0.0], [0.0], [0.0]], [["0"]] * 4,
+          [[True]] * 4, [[1j]] * 4, np.zeros(4, np.float32), np.zeros((4, 1), object)]),
+    ],
+)  # fmt: skip
 def test_invalid_actions_are_rejected(kind, actions):
-    """The message has the action itself, not what it becomes as int64."""
     envs = kind(4)
     envs.reset(seed=1)
     message = r"actions must be \w+ of shape \(4, ?1?\), got |actions\[\d\] must be (0|a number)"
-    if getattr(actions, "dtype", None) == np.uint64:
-        message = rf"actions\[1\] must be 0, 1 or 2, got {actions[1]}$"
-    with rejects(envs, InvalidAction, message):
-        envs.step(actions)
+    for each in actions:
+        with rejects(envs, InvalidAction, message):
+            envs.step(each)
 
 
 @pytest.mark.parametrize(
     "convert",
-    [np.uint8, np.int8, np.int32, np.uint64, lambda actions: actions.astype(">i8"), list,
+    [np.uint8, np.int32, lambda actions: actions.astype(">i8"), list,
      lambda actions: np.repeat(actions, 2)[::2],
      # Numbers after a header of one byte are not aligned. Gymnasium accepts them.
      lambda actions: np.frombuffer(b"h" + actions.tobytes(), np.int64, offset=1)],
@@ -101,39 +85,16 @@ def test_actions_can_be_integers_of_any_type(convert):
     np.testing.assert_equal(envs.step(convert(actions)), twin.step(actions))
 
 
-COUNTS = "num_envs", "max_episode_steps", "threads"
-
-
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        *(("num_envs", count) for count in (0, -1, 2**40)),
-        *(("max_episode_steps", count) for count in (0, 2**32)),
-        *(("autoreset_mode", mode) for mode in ("nextstep", *NO_NAMES)),
-        ("threads", 0),
-        *(("render_mode", mode) for mode in ("human", *NO_NAMES[1:])),
-        *((name, value) for name in COUNTS for value in (2.0, "2", True)),
-        *((name, value) for name in ("copy", "gymnasium_episodes") for value in (1, "False", None)),
-        *(("info_parameters", value) for value in (True, None, "dt", [0], NO_NAMES)),
-        ("float64", True),
+        *(("num_envs", count) for count in (0, -1, 2**40, 2.0, "2")),
+        *(("max_episode_steps", 0), ("threads", 0), ("render_mode", "human"), ("float64", True)),
     ],
 )
 def test_invalid_arguments_are_rejected(name, value):
-    with pytest.raises((TypeError, ValueError), match=f"^{name} must be .*, got "):
+    with pytest.raises(ValueError, match=f"^{name} must be .*, got "):
         AcrobotVectorEnv(**{"num_envs": 2, "gymnasium_episodes": name == "float64", name: value})
-
-
-@pytest.mark.parametrize("name", NO_NAMES)
-def test_what_is_no_name_is_rejected(name):
-    envs, single = AcrobotVectorEnv(2), AcrobotEnv()
-    for call in (envs.call, envs.get_attr, envs.get_parameter, lambda name: envs.set_attr(name, 1)):
-        with rejects(envs, AttributeError, re.escape(repr(name))):
-            call(name)
-    with rejects(single, TypeError, f"^name must be a string, got {re.escape(repr(name))}"):
-        single.set_wrapper_attr(name, 1)
-    if name is not None:
-        with pytest.raises(TypeError, match=f"^render_mode must .*, got {re.escape(repr(name))}"):
-            AcrobotEnv(render_mode=name)
 
 
 @pytest.mark.parametrize(
@@ -144,15 +105,15 @@ def test_what_is_no_name_is_rejected(name):
     ],
 )
 def test_a_call_that_does_not_fit_into_memory_raises(call, message):
-    """In a process that may use 2 MB more than it has when the call begins."""
+    """In a process that may use 256 KB more than it has when the call begins."""
     code = f"""if True:
         import resource
         import acrobot_rs
         import numpy as np
-        batch = acrobot_rs._native.Batch(2_000_000)
-        actions, observations = np.zeros(2_000_000, np.int64), np.empty((2_000_000, 6), np.float32)
+        batch = acrobot_rs._native.Batch(500_000)
+        actions, observations = np.zeros(500_000, np.int64), np.empty((500_000, 6), np.float32)
         pages = int(open("/proc/self/statm").read().split()[0])
-        resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + 2**21,) * 2)
+        resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + 2**18,) * 2)
         try:
             {call}
         except MemoryError as error:
@@ -222,7 +183,7 @@ def test_torques_are_those_of_actions(gymnasium_episodes):
         is_end = [inside == end(axis=1, keepdims=True) for end in (inside.max, inside.min)]
         beyond = [np.select(is_end, ends, inside) for ends in ([np.inf, -9.0], [1e300, -1e39])]
         for kind in (np.float32(inside), *beyond):
-            for actions in np.random.default_rng(0).integers(3, size=(100, 30)):
+            for actions in np.random.default_rng(0).integers(3, size=(70, 30)):
                 chosen = kind[np.arange(30), actions][:, None]
                 assert_equal(discrete.step(actions), torques.step(chosen))
     discrete.step([0] * 30)
@@ -234,17 +195,17 @@ def test_torques_are_those_of_actions(gymnasium_episodes):
     ("kind", "count", "arguments"),
     [
         (AcrobotSwingupVectorEnv, 40_003, {}),
-        *((kind, 40_003, {"torque_noise_max": 0.5}) for kind in INVALID),
-        *((kind, 3_003, {"torque_noise_max": 0.5, "gymnasium_episodes": True}) for kind in INVALID),
+        (AcrobotVectorEnv, 40_003, {"torque_noise_max": 0.5}),
+        (AcrobotContinuousVectorEnv, 3_003, {"torque_noise_max": 0.5, "gymnasium_episodes": True}),
     ],
 )
 def test_threads_change_no_bit(kind, count, arguments):
     plays = []
     for threads in (1, 3, None):
-        envs = kind(count, 9, None, "SameStep", threads=threads, **arguments)
+        envs = kind(count, 2, autoreset_mode="SameStep", threads=threads, **arguments)
         envs.reset(seed=1)
         envs.action_space.seed(1)
-        plays.append([[*envs.step(envs.action_space.sample())[:4], envs.state] for _ in range(12)])
+        plays.append([[*envs.step(envs.action_space.sample())[:4], envs.state] for _ in range(3)])
     np.testing.assert_equal(plays, [plays[0]] * 3)
 
 
@@ -293,36 +254,13 @@ BUSY = (
 )
 
 
-def test_a_call_during_a_step_is_rejected_and_changes_nothing():
-    count = 500_000  # so many that a step takes long enough for another call
-    envs = AcrobotVectorEnv(count, gymnasium_episodes=True, render_mode="ansi")
-    states, actions = np.zeros((count, 4)), np.ones(count, np.int64)
-    attributes = [("state", states), ("dt", 0.1), ("dt", Uniform(0.1, 0.2)), ("dt", [0.1])]
-    functions = [pickle.dumps, copy.deepcopy, lambda envs: envs._native.__setstate__(b"")]
-    calls = [
-        *((lambda pair=pair: setattr(envs, *pair)) for pair in attributes),
-        *((lambda function=function: function(envs)) for function in functions),
-        *(lambda: envs.state, lambda: envs.elapsed_steps, envs.render),
-    ]
-    for call in calls:
-        envs.reset()
-        with ThreadPoolExecutor(1) as executor:
-            step = executor.submit(envs.step, actions)
-            with contextlib.suppress(RuntimeError):
-                while not step.done():
-                    len(envs._native)  # fails as soon as the step is under way
-            with pytest.raises(RuntimeError) as raised:
-                call()
-            assert str(raised.value) == BUSY
-            assert not step.done(), "more environments are necessary"
-        step.result()
-        assert envs.dt == 0.2 and (envs.elapsed_steps == 1).all()
-
-
-def test_a_call_during_a_conversion_is_rejected():
-    """As any call is without Python's lock, in a single environment too."""
-    env = AcrobotEnv()
-    calls, errors = (lambda: env.step(0), lambda: env.state, lambda: pickle.dumps(env)), []
+@pytest.mark.parametrize("kind", [AcrobotEnv, AcrobotVectorEnv])
+def test_a_call_of_another_thread_during_a_call_is_rejected(kind):
+    """A step of many lets other threads run, and so does this conversion of a number."""
+    env, errors = kind(), []
+    env.reset(seed=1)
+    calls = [lambda: env.step([0]), lambda: env.state, env.reset, lambda: pickle.dumps(env)]
+    calls.append(lambda: setattr(env, "dt", 0.1))
 
     class Mass:
         def __float__(self):
@@ -330,8 +268,9 @@ def test_a_call_during_a_conversion_is_rejected():
                 errors.extend(executor.submit(call).exception() for call in calls)
             return 2.0
 
-    env._native.set("LINK_MASS_1", Mass())
-    assert [(type(each), str(each)) for each in errors] == [(RuntimeError, BUSY)] * 3
+    env._native.set("LINK_MASS_1", Mass() if kind is AcrobotEnv else [Mass()])
+    assert [(type(each), str(each)) for each in errors] == [(RuntimeError, BUSY)] * 5
+    assert env.dt == 0.2
 
 
 @pytest.mark.parametrize("kind", [AcrobotEnv, AcrobotVectorEnv])
@@ -354,36 +293,6 @@ def test_threads_that_share_an_environment_step_one_after_the_other_or_not(kind)
     for _ in range(steps):
         twin.step(action)
     assert steps > 100 and env._native.__getstate__() == twin._native.__getstate__()
-
-
-MASK = {"reset_mask": np.ones(3, bool)}
-RESETS = ({}, {"seed": 2}, {"seed": [2] * 3}, {"seed": [2] * 3, "options": MASK})
-
-
-@pytest.mark.parametrize("copies", [True, False])
-def test_a_step_or_reset_beside_a_step_changes_nothing(copies):
-    """Neither seeds nor observations that all calls share."""
-    envs = AcrobotVectorEnv(3, copy=copies, autoreset_mode="Disabled")
-    envs.reset(seed=1)
-    actions = np.ones(3, int)
-    twin, native = copy.deepcopy(envs), envs._native
-    resets = (*RESETS, {"seed": 2, "options": {"state": np.zeros(4)}})
-    calls = [lambda: envs.step(actions), *(lambda each=each: envs.reset(**each) for each in resets)]
-
-    def step(*arguments):
-        """The part of a step in Rust, and then calls of another thread."""
-        envs._native = native
-        results = native.step(*arguments)
-        before = native.__getstate__(), envs.np_random_seed
-        for call in calls:
-            with ThreadPoolExecutor(1) as executor, pytest.raises(RuntimeError, match=BUSY):
-                executor.submit(call).result()
-            assert before == (native.__getstate__(), envs.np_random_seed)
-        return results
-
-    envs._native = SimpleNamespace(step=step)
-    assert_equal(envs.step(actions), twin.step(actions))
-    assert native.__getstate__() == twin._native.__getstate__()
 
 
 def test_steps_in_float64_are_gymnasiums_but_for_rounding():

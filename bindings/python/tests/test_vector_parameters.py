@@ -1,7 +1,5 @@
 """Parameters of each environment: values, draws, and what reads them."""
 
-import re
-
 import acrobot_rs
 import gymnasium
 import numpy as np
@@ -14,17 +12,14 @@ from vectors import make_vec, rejects
 @pytest.mark.parametrize(
     ("error", "name", "value", "message"),
     [
-        (TypeError, "LINK_MASS_1", vars(Uniform(1, 2)), " must be a number, got {"),
         (TypeError, "LINK_MASS_1", [1, 2, None], r"\[2\] must be a number, got None"),
-        (ValueError, "LINK_MASS_1", [1, 2], " must be .* each of 3 environments, or a draw "),
-        (ValueError, "book_or_nips", ["book"], " must be .* each of 3 environments, got 1 values"),
+        (ValueError, "LINK_MASS_1", [1, 2], " must be .* each of 3 environments, .*, got 2 values"),
         (ValueError, "AVAIL_TORQUE", [-1, 1], r" must be 3 numbers, such as \[-2, 0, 2\], got 2"),
-        (TypeError, "AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, True, 3]], r"\[2\] must be a seq"),
         (ValueError, "AVAIL_TORQUE", [[1, 2, 3], [1, 2], [1, 2, 3]], r"\[1\] must be 3 numbers, s"),
-        (ValueError, "book_or_nips", ["book", "nips", "b"], r'\[2\] must be "book" .*, got "b"'),
+        (ValueError, "book_or_nips", ["book", "nips", "b"], r"\[2\] must be 'book' .*, got 'b'"),
         (ValueError, "LINK_COM_POS_2", Uniform(0, 1), "LINK_MOI must be above 0 if the centre"),
-        (TypeError, "AVAIL_TORQUE", Uniform(0, 1), r" must be a sequence of 3 numbers, got 0\.0"),
-        (TypeError, "book_or_nips", Uniform(0, 1), ' must be "book" or "nips", got 0'),
+        (TypeError, "AVAIL_TORQUE", Uniform(0, 1), " must be a sequence of 3 numbers, got 0"),
+        (TypeError, "book_or_nips", Uniform(0, 1), " must be 'book' or 'nips', got 0"),
     ],
 )
 def test_a_rejected_parameter_changes_nothing(error, name, value, message, gymnasium_episodes):
@@ -59,17 +54,6 @@ def test_the_number_given_is_in_the_message(name, value, number):
     envs = make_vec(3)
     with rejects(envs, ValueError, f"^{name}.* must be .*, got {number}$"):
         setattr(envs, name, value)
-
-
-def test_zeros_of_both_signs_are_different_values():
-    for gymnasium_episodes in (False, True):
-        envs = make_vec(2, gymnasium_episodes=gymnasium_episodes)
-        for zeros in ([0.0, -0.0], [-0.0, 0.0], [-0.0, -0.0], [0.0, 0.0]):
-            envs.gravity = zeros
-            assert (np.signbit(envs.get_parameter("gravity")) == np.signbit(zeros)).all()
-            native = np.empty((2, 1))
-            envs._native.get("gravity", native)
-            assert (np.signbit(native[:, 0]) == np.signbit(zeros)).all()
 
 
 #: In the order of their draws, which is not that of the assignments. `test_recorded.py` has other
@@ -127,30 +111,6 @@ def test_resets_draw_parameters(gymnasium_episodes, mode):
     assert (envs.get_parameter("gravity") != expected["gravity"]).all()
 
 
-@pytest.mark.parametrize(
-    ("error", "kind", "numbers", "message"),
-    [
-        (ValueError, Uniform, ([-1, 0, 1], 2), "low must be of the same length as high, got Unif"),
-        (TypeError, Uniform, ([1, 2], [3, 4]), r"low must be three .*, got int64 of shape \(2,\)"),
-        (TypeError, Uniform, ([0, 0, True], [1, 1, 1]), r"low must be .*, got \[0, 0, True\]"),
-        (TypeError, Uniform, (0.2, None), "high must be a number, got None"),
-        (TypeError, LogUniform, ([1, 2, 3], 4.0), "low must be a number, got"),
-    ],
-)
-def test_draws_of_other_types_are_rejected_when_they_are_made(error, kind, numbers, message):
-    with pytest.raises(error, match=f"^{message}"):
-        kind(*numbers)
-
-
-@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotVectorEnv])
-@pytest.mark.parametrize(
-    "value", [{"kind": ["Uniform"]}, {"kind": "Uniform"}, {**vars(Uniform(1, 2)), "std": 3}, {}]
-)
-def test_other_dicts_than_the_json_of_a_draw_are_rejected(kind, value):
-    with pytest.raises(TypeError, match=re.escape(f"LINK_MASS_1 must be a number, got {value}")):
-        kind(LINK_MASS_1=value)
-
-
 def test_drawn_parameters_in_infos_and_arrays():
     draws = {"dt": LogUniform(0.1, 0.3), "AVAIL_TORQUE": Uniform([-2, 0, 1], [-1, 0, 2])}
     arguments = {"autoreset_mode": "SameStep", "info_parameters": iter(draws), **draws}
@@ -164,11 +124,8 @@ def test_drawn_parameters_in_infos_and_arrays():
         array = envs.get_parameter(name)
         assert array.shape == shape
         assert (after[name] == array).all() and (array == envs.get_attr(name)).all()
-    message = "info_parameters must be names .*, got 'LINK_MAS_1'; did you mean LINK_MASS_1"
-    with pytest.raises(ValueError, match=message):
-        make_vec(2, info_parameters=["LINK_MAS_1"])
-    with pytest.raises(AttributeError, match="no parameter 'mass_1'; did you mean LINK_MASS_1"):
-        envs.get_parameter("mass_1")
+    with pytest.raises(AttributeError, match="no parameter 'mass_1'; they have .*, LINK_MASS_1"):
+        make_vec(2, info_parameters=["mass_1"])
 
 
 def test_subclasses_can_draw_parameters_which_spaces_follow():
@@ -184,9 +141,3 @@ def test_subclasses_can_draw_parameters_which_spaces_follow():
     envs.AVAIL_TORQUE = [[-1, 0, 1], [-5, 0, 1], [-1, 0, 4]] + [[0, 0, 0]] * 47
     assert envs.single_action_space == gymnasium.spaces.Box(-5.0, 4.0, (1,), np.float32)
     assert envs.action_space == gymnasium.spaces.Box(-5.0, 4.0, (50, 1), np.float32)
-    with pytest.raises(ValueError, match="MAX_VEL_1 must "):
-        type("Wrong", (Random,), {"MAX_VEL_1": Uniform(-1.0, 2.0)})
-    single = acrobot_rs.AcrobotEnv()
-    message = "LINK_MASS_1 must be a number, because only gymnasium.make_vec draws .*, got Uniform"
-    with pytest.raises(TypeError, match=message):
-        single.LINK_MASS_1 = Uniform(1.0, 2.0)

@@ -16,8 +16,6 @@ SINGLE_KINDS = [kind for kind in KINDS if issubclass(kind, gymnasium.Env)]
 V1 = "acrobot_rs/Acrobot-v1"
 CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
 SWINGUPS = ["acrobot_rs/AcrobotSwingup-v0", "acrobot_rs/AcrobotSwingupSparse-v0"]
-#: Some have no hash, and a comparison with an array is no bool.
-NO_NAMES = [None, 1, ["swingup"], {"dt": "dt"}, np.array(["dt", "dt"]), np.array([])]
 MODES = pytest.mark.parametrize("mode", AutoresetMode)
 
 

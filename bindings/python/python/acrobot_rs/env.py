@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -11,16 +11,13 @@ from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
-from acrobot_rs.arrays import must_be, numbers, plain_seed, require, reset_bounds
-from acrobot_rs.parameters import Parameters
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
-
-    from acrobot_rs.parameters import Arguments, Equations, Torques
+from acrobot_rs.arrays import must_be, numbers, plain_seed, reset_bounds
+from acrobot_rs.parameters import Equations, Parameters, Torques
 
 
-class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
+class AcrobotEnv(
+    Parameters[float, Torques, Equations], gymnasium.Env[NDArray[np.float32], np.int64]
+):
     """Gymnasium's ``Acrobot-v1``: a motor between two hanging links must swing them up.
 
     ## Description
@@ -74,45 +71,19 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     _native: Acrobot
 
-    if TYPE_CHECKING:  # Many environments accept more.
-        dt: float
-        LINK_LENGTH_1: float
-        LINK_LENGTH_2: float
-        LINK_MASS_1: float
-        LINK_MASS_2: float
-        LINK_COM_POS_1: float
-        LINK_COM_POS_2: float
-        LINK_MOI: float
-        gravity: float
-        MAX_VEL_1: float
-        MAX_VEL_2: float
-        AVAIL_TORQUE: Torques
-        torque_noise_max: float
-        book_or_nips: Equations
-
     def __init__(
-        self,
-        render_mode: str | None = None,
-        **parameters: Unpack[Arguments[float, Torques, Equations]],
+        self, render_mode: str | None = None, **parameters: float | Torques | Equations
     ) -> None:
         """Make an environment. Reset it before its first step.
 
         ``render`` rejects an unknown render mode, because ``gymnasium.make`` only warns of it.
         """
-        require(str | None, "a string or None", render_mode=render_mode)
-        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS, self._TASK), None, parameters)
-        self.render_mode = render_mode
         # The window, by the names of Gymnasium's environment.
         self.screen: Any = None
         self.clock: Any = None
         self.isopen = True
-        self._made = True
-
-    def set_wrapper_attr(self, name: str, value: Any, **kwargs: Any) -> bool:
-        """As in Gymnasium, but rejects an unknown name, which would have no effect."""
-        require(str, "a string", name=name)
-        self._check_name(name)
-        return super().set_wrapper_attr(name, value, **kwargs)
+        native = Acrobot(self._ANGLES, self._CONTINUOUS, self._TASK)
+        super().__init__(native, render_mode, parameters)
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the window, which a copy opens itself."""
@@ -151,10 +122,11 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         Raises:
             TypeError, ValueError, gymnasium.error.Error: If options or the seed are invalid.
         """
-        low, high = reset_bounds(options, self._BOUND, ("low", "high", "state"))
+        options = options or {}
+        low, high = reset_bounds(options, self._BOUND)
         seed = plain_seed(seed)
         given = None
-        if options and "state" in options:
+        if "state" in options:
             rule = "four finite numbers in the range of float32"
             given = numbers("state", rule, options["state"], (4,))
             with np.errstate(over="ignore"):

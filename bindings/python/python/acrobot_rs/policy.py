@@ -11,7 +11,6 @@ import struct
 import warnings
 import zlib
 from collections.abc import Iterable, Sequence
-from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs.arrays import LARGEST, is_one_of, must_be, numbers, require
+from acrobot_rs.arrays import LARGEST, must_be, numbers
 
 Layer = tuple[Any, Any, str]
 """Weights ``(outputs, inputs)``, biases, and ``"none"``, ``"tanh"`` or ``"relu"``."""
@@ -140,7 +139,7 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
         if not 1 <= outputs < 2**16 or weights.shape != (outputs, inputs):
             rule = f"weights of shape (outputs, {inputs}) and biases of shape (outputs,)"
             raise ValueError(f"layer {i} must have {rule}, got {weights.shape} and {biases.shape}")
-        if not is_one_of(activation, _ACTIVATIONS):
+        if activation not in _ACTIVATIONS:
             name = f"the activation of layer {i}"
             raise must_be(name, f"one of {_ACTIVATIONS}", repr(activation))
         rows = np.column_stack([biases, weights])
@@ -159,7 +158,6 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
 
 
 def _checked(torque_limit: float) -> float:
-    require(Real, "a number of N m", torque_limit=torque_limit)
     # Up to 2^-150 it is 0 in float32.
     if not 2.0**-150 < torque_limit <= LARGEST:
         raise must_be("torque_limit", "finite and above 0 N m in float32", torque_limit)
@@ -199,7 +197,7 @@ def save(
         what = "it has Dropout in training mode; call model.eval() before"
         raise ValueError(f"the model must be in evaluation mode: {what}")
     is_swingup = policy is not None and bool(np.isinf(policy.observation_space.high).any())
-    scale, note = 1, ""
+    scale = 1.0
     if policy is not None and isinstance(policy.action_space, gym.spaces.Box):
         low, high = float(policy.action_space.low[0]), float(policy.action_space.high[0])
         if not 0 < high == -low < np.inf:
@@ -211,13 +209,14 @@ def save(
         weights, biases, activation = layers[-1]
         layers[-1] = (weights * scale, biases * scale, activation)
     normalize = model.get_vec_normalize_env() if policy is not None else None
+    note = ""
     if normalize is not None and normalize.norm_obs:
         mean, deviation = normalize.obs_rms.mean, np.sqrt(normalize.obs_rms.var + normalize.epsilon)
         bounds = policy.observation_space.high
         if ((bounds + abs(mean)) / deviation > normalize.clip_obs).any():
             clip = f"at clip_obs={normalize.clip_obs:g}"
-            note = f"VecNormalize clips extreme observations, {clip}, and the file does not"
-            warnings.warn(note, stacklevel=2)
+            note = f". VecNormalize clips extreme observations, {clip}, and the file does not"
+            warnings.warn(note[2:], stacklevel=2)
         weights, biases, activation = layers[0]
         layers[0] = (weights / deviation, biases - weights @ (mean / deviation), activation)
     content = _content(layers, torque_limit)
@@ -227,8 +226,19 @@ def save(
     seen = _floats("observations", rule, observations)
     if seen.shape[1:] != (6,) or not seen.size or not np.isfinite(seen).all():
         raise must_be("observations", rule, reprlib.repr(observations))
-    expected = scale * _expected(model, policy, normalize, modules, seen)
-    _compare(layers, seen, expected, torque_limit, note)
+    if policy is None:
+        import torch
+
+        with torch.no_grad():
+            expected = modules(torch.as_tensor(seen)).numpy()
+        expected = expected if torque_limit is not None else expected.argmax(1)
+    else:
+        inputs = seen if normalize is None else normalize.normalize_obs(seen)
+        expected = scale * np.asarray(model.predict(inputs, deterministic=True)[0])
+    differ = _differ(_outputs(layers, seen), expected, torque_limit)
+    if differ.any():
+        where = f"they differ on {differ.sum()} of {len(seen)} observations{note}"
+        raise ValueError(f"the file's actions must be those of the model; {where}")
     Path(path).write_bytes(content)
 
 
@@ -294,40 +304,16 @@ def _observations(task: str) -> NDArray[np.float32]:
     return np.concatenate(seen)
 
 
-def _expected(
-    model: Any, policy: Any, normalize: Any, modules: Any, seen: NDArray[np.float32]
-) -> NDArray[Any]:
-    """What the model itself answers."""
-    if policy is not None:
-        inputs = seen if normalize is None else normalize.normalize_obs(seen)
-        return np.asarray(model.predict(inputs, deterministic=True)[0])
-    import torch
-
-    with torch.no_grad():
-        outputs = modules(torch.as_tensor(seen)).numpy()
-    return outputs if outputs.shape[1] == 1 else outputs.argmax(1)
-
-
-def _compare(
-    layers: list[Layer],
-    seen: NDArray[np.float32],
-    expected: NDArray[Any],
-    torque_limit: float | None,
-    note: str,
-) -> None:
-    x = _outputs(layers, seen)
-    if wrong := (~np.isfinite(x)).any(1).sum():
-        where = f"they are not on {wrong} of {len(seen)} observations"
+def _differ(
+    outputs: NDArray[Any], expected: NDArray[Any], torque_limit: float | None
+) -> NDArray[np.bool_]:
+    """Where a file's outputs give another action than its model."""
+    if wrong := (~np.isfinite(outputs)).any(1).sum():
+        where = f"they are not on {wrong} of {len(outputs)} observations"
         raise ValueError(f"the outputs of the file must be finite; {where}")
     if torque_limit is None:
         # Scores that differ by a rounding are a tie.
-        chosen = np.take_along_axis(x, expected.reshape(-1, 1), 1)[:, 0]
-        differ = x.max(1) - chosen > 1e-4 * np.maximum(1, abs(x).max(1))
-    else:
-        torques, others = (
-            np.clip(each[:, 0], -torque_limit, torque_limit) for each in (x, expected)
-        )
-        differ = abs(torques - others) > 1e-4 * torque_limit
-    if differ.any():
-        where = f"they differ on {differ.sum()} of {len(seen)} observations{note and '. '}{note}"
-        raise ValueError(f"the file's actions must be those of the model; {where}")
+        chosen = np.take_along_axis(outputs, expected.reshape(-1, 1).astype(int), 1)[:, 0]
+        return outputs.max(1) - chosen > 1e-4 * np.maximum(1, abs(outputs).max(1))
+    torques, others = np.clip([outputs[:, 0], expected[:, 0]], -torque_limit, torque_limit)
+    return abs(torques - others) > 1e-4 * torque_limit

@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from gymnasium.vector import AutoresetMode, VectorEnv
-from numpy.typing import NDArray
+from gymnasium.vector import VectorEnv
+from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import SWINGUP_BOUND, SWINGUP_MAX_STEPS
 from acrobot_rs.env import AcrobotContinuousEnv
-from acrobot_rs.native_vector import Floats
-from acrobot_rs.parameters import Each, EachTorques, Parameters, _unknown
-from acrobot_rs.vector import AcrobotContinuousVectorEnv
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
-
-    from acrobot_rs.parameters import EachEquations, Equations, SwingupArguments, Torques
+from acrobot_rs.parameters import Each, EachEquations, EachTorques, Equations, Parameters, Torques
+from acrobot_rs.vector import AcrobotContinuousVectorEnv, Bools, Floats
+from acrobot_rs.vector import ManyEquations, ManyTorques, Numbers
 
 
-class Swingup(Parameters):
+class Swingup(Parameters[Each, EachTorques, EachEquations]):
     """The parameters of the swing-up: those of the first task with dm_control's values, and others.
 
     The largest number in ``AVAIL_TORQUE`` is the torque of the action 1, and the smallest that of
@@ -47,16 +41,14 @@ class Swingup(Parameters):
     _BOUND = SWINGUP_BOUND
     _ACTION = "a number from -1 to 1"
 
-    @property
-    def LINK_MOI(self) -> float:  # type: ignore[override]
-        """Each link has its own."""
-        raise _unknown(type(self), "LINK_MOI")
+    #: Each link has its own. Access raises an ``AttributeError``.
+    LINK_MOI = property()  # type: ignore[assignment]
 
     def _limits(self) -> tuple[float, float, float, float]:
         return -1.0, 1.0, math.inf, math.inf
 
 
-class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
+class AcrobotSwingupEnv(Swingup[float, Torques, Equations], AcrobotContinuousEnv):
     """dm_control's ``acrobot-swingup``, step by step within the rounding of ``float64``.
 
     The action is an array of one number from -1 to 1: a torque of up to 2 N m between the links,
@@ -85,23 +77,6 @@ class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
 
     metadata: dict[str, Any] = {**AcrobotContinuousEnv.metadata, "render_fps": 100}
 
-    if TYPE_CHECKING:  # Many environments accept more.
-        LINK_MOI_1: float
-        LINK_MOI_2: float
-        FRICTION_1: float
-        FRICTION_2: float
-        gravity: float
-        dt: float
-        MAX_VEL_1: float
-        MAX_VEL_2: float
-        AVAIL_TORQUE: Torques
-
-        def __init__(
-            self,
-            render_mode: str | None = None,
-            **parameters: Unpack[SwingupArguments[float, Torques, Equations]],
-        ) -> None: ...
-
     def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
         drawn = np.array([*self.np_random.uniform(low, high, 2), 0.0, 0.0])
         self.state = drawn if given is None else given
@@ -111,11 +86,17 @@ class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
 class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
     """dm_control's ``acrobot-swingup_sparse``: no reward beyond 0.2 m from the target."""
 
-    _TASK = "swingup_sparse"
+    def step(
+        self, action: ArrayLike
+    ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        observation, reward, *others = super().step(action)
+        return observation, float(reward == 1.0), *others
 
 
 class AcrobotSwingupVectorEnv(
-    Swingup, AcrobotContinuousVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]
+    Swingup[Numbers, ManyTorques, ManyEquations],
+    AcrobotContinuousVectorEnv,
+    VectorEnv[Floats, NDArray[Any], np.ndarray],
 ):
     """Many :class:`AcrobotSwingupEnv`, with actions of shape ``(num_envs, 1)``.
 
@@ -130,24 +111,10 @@ class AcrobotSwingupVectorEnv(
     metadata: dict[str, Any] = {**AcrobotContinuousVectorEnv.metadata, "render_fps": 100}
 
     def __init__(
-        self,
-        num_envs: int = 1,
-        max_episode_steps: int | None = SWINGUP_MAX_STEPS,
-        render_mode: str | None = None,
-        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
-        copy: bool = True,
-        threads: int | None = 1,
-        info_parameters: Sequence[str] = (),
-        float64: bool = False,
-        **parameters: Unpack[SwingupArguments[Each, EachTorques, EachEquations]],
+        self, num_envs: int = 1, max_episode_steps: int | None = SWINGUP_MAX_STEPS, **others: Any
     ) -> None:
-        """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
-        self._check_arguments(parameters)  # gymnasium_episodes is none
-        super().__init__(
-            *(num_envs, max_episode_steps, render_mode, autoreset_mode, copy),
-            *(False, threads, info_parameters, float64),
-            **parameters,
-        )
+        """Make environments. Other arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
+        super().__init__(num_envs, max_episode_steps, gymnasium_episodes=False, **others)
 
 
 class AcrobotSwingupSparseVectorEnv(
@@ -155,4 +122,8 @@ class AcrobotSwingupSparseVectorEnv(
 ):
     """Many :class:`AcrobotSwingupSparseEnv`."""
 
-    _TASK = "swingup_sparse"
+    def step(
+        self, actions: ArrayLike
+    ) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
+        observations, rewards, *others = super().step(actions)
+        return observations, (rewards == 1.0).astype(np.float32), *others

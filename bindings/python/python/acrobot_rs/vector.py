@@ -3,30 +3,38 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from numbers import Integral
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from gymnasium.error import InvalidAction
+from gymnasium.error import ClosedEnvironmentError, InvalidAction, ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import MAX_STEPS, Batch
-from acrobot_rs.arrays import is_one_of, must_be, numbers, read_only, require
-from acrobot_rs.native_vector import Alone, Floats, NativeVectorEnv
-from acrobot_rs.parameters import Drawn, Parameters, _fixed, _hint
+from acrobot_rs.arrays import Seed, must_be, numbers, read_only
+from acrobot_rs.parameters import Drawn, Equations, Parameters, Torques
 
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
+Floats = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+Numbers = float | Sequence[float] | NDArray[Any] | Drawn
+ManyTorques = Torques | Sequence[Sequence[float]] | Drawn
+ManyEquations = Equations | Sequence[str] | NDArray[Any]
 
-    from acrobot_rs.parameters import Arguments, Each, EachEquations, EachTorques
+#: What ``get_attr`` and ``call`` know, with the parameters.
+_ATTRIBUTES = (
+    *("action_space", "elapsed_steps", "max_episode_steps", "metadata", "observation_space"),
+    *("render", "render_mode", "spec", "state"),
+)
 
 
-class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
+class AcrobotVectorEnv(
+    Parameters[Numbers, ManyTorques, ManyEquations], VectorEnv[Floats, NDArray[Any], np.ndarray]
+):
     """Many ``Acrobot-v1`` environments, thousands of times as fast as ``SyncVectorEnv``.
 
     They are computed in ``float32``, or with ``float64=True`` in ``float64``, bit-identically on
@@ -53,7 +61,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    _CHOSEN = ("autoreset_mode", "copy", "info_parameters", "max_episode_steps", "num_envs")
+    #: Whether it was reset and not closed.
+    _ready = False
 
     def __init__(
         self,
@@ -66,7 +75,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         threads: int | None = 1,
         info_parameters: Sequence[str] = (),
         float64: bool = False,
-        **parameters: Unpack[Arguments[Each, EachTorques, EachEquations]],
+        **parameters: Numbers | ManyTorques | ManyEquations,
     ) -> None:
         """Make environments. Reset them before their first step.
 
@@ -91,26 +100,17 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             TypeError, ValueError: If an argument is invalid.
             MemoryError: If the environments do not fit into memory.
         """
-        require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
-        info_parameters = tuple(info_parameters)
-        for name in (each for each in info_parameters if not is_one_of(each, self._NAMES)):
-            hint = _hint(str(name), self._NAMES)
-            raise must_be("info_parameters", "names of parameters", f"{name!r}; {hint}")
-        modes = [mode.value for mode in AutoresetMode]
-        if not (isinstance(autoreset_mode, AutoresetMode) or is_one_of(autoreset_mode, modes)):
-            raise must_be("autoreset_mode", f"one of {modes}", repr(autoreset_mode))
-        flags = {"copy": copy, "gymnasium_episodes": gymnasium_episodes, "float64": float64}
-        require(bool, "True or False", **flags)
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            rule = f"None or one of {self.metadata['render_modes']}"
+            raise must_be("render_mode", rule, repr(render_mode))
         if threads is None:
             has_affinity = hasattr(os, "sched_getaffinity")
             threads = len(os.sched_getaffinity(0)) if has_affinity else os.cpu_count() or 1
         limit = 2**32 - 1 if max_episode_steps is None else max_episode_steps
         counts = {"num_envs": num_envs, "max_episode_steps": limit, "threads": threads}
-        require(Integral, "an integer", **counts)
         for name, count in counts.items():
-            if not 0 < count < 2**32:
-                no_limit = ", or None for no limit" if name == "max_episode_steps" else ""
-                raise must_be(name, f"an integer from 1 to {2**32 - 1}{no_limit}", count)
+            if not (isinstance(count, Integral) and 0 < count < 2**32):
+                raise must_be(name, f"an integer from 1 to {2**32 - 1}", repr(count))
         if gymnasium_episodes:
             if float64:
                 rule = "False with gymnasium_episodes, which computes in float64"
@@ -123,21 +123,20 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             *(num_envs, str(self.np_random_seed), limit, mode.value, engine),
             *(self._CONTINUOUS, threads),
         )
-        self._alone = Alone()
         self.autoreset_mode = mode
         self.metadata = {**self.metadata, "autoreset_mode": mode}
         self.num_envs = num_envs
         self.max_episode_steps = max_episode_steps
         self.copy = copy
-        self.info_parameters = info_parameters
+        self.info_parameters = tuple(info_parameters)
         #: The array that all calls return, or ``None`` if each returns a new one.
         self._observations = None if copy else self._empty()
         self._same_step = mode is AutoresetMode.SAME_STEP
         self._disabled = mode is AutoresetMode.DISABLED
-        super().__init__(native, render_mode, parameters)
         self._gymnasium_episodes = gymnasium_episodes
         self._float64 = gymnasium_episodes or float64
-        self._made = True
+        super().__init__(native, render_mode, parameters)
+        self._parameter_infos()  # rejects unknown names
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
         single = super()._spaces()
@@ -145,19 +144,15 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         return {f"single_{name}": space for name, space in single.items()} | batched
 
     def _pass(self, name: str, value: Any) -> Any:
-        with self._alone:
-            if isinstance(value, Drawn):
-                self._native.set_drawn(name, value)
-                return value
-            each = arrays.values_of_each(name, value, self.num_envs)
-            self._native.set(name, [value] if each is None else each)
+        if isinstance(value, Drawn):
+            self._native.set_drawn(name, value)
+            return value
+        each = arrays.values_of_each(name, value, self.num_envs)
+        self._native.set(name, [value] if each is None else each)
         if each is None:
-            return _fixed(name, value)
-        values = np.array([_fixed(name, one) for one in each])
-        # By their bits: -0.0 is another value than 0.0.
-        if values.tobytes() != np.full_like(values, values[0]).tobytes():
-            return read_only(values)
-        return _fixed(name, each[0])
+            return self._fixed(name, value)
+        values = np.array([self._fixed(name, one) for one in each])
+        return self._fixed(name, each[0]) if (values == values[0]).all() else read_only(values)
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
         """The actions as an array that the native part reads. It calls this where necessary."""
@@ -168,12 +163,217 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         actions = numbers(
             "actions", f"{what} of shape {shape}", actions, shape, kinds, InvalidAction
         )
-        if actions.dtype.kind == "u" and (actions > 2).any():  # which int64 may not have
-            index = int(np.argmax(actions > 2))
-            raise must_be(f"actions[{index}]", "0, 1 or 2", actions[index], InvalidAction)
         with np.errstate(over="ignore"):  # an infinite torque acts as the bound
-            # An array over packed bytes is not aligned, which Rust requires.
-            return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), dtype)
+            return np.require(actions, dtype, "CA")
+
+    def reset(
+        self, *, seed: Seed = None, options: dict[str, Any] | None = None
+    ) -> tuple[Floats, dict[str, Any]]:
+        """Begin an episode in each environment.
+
+        Args:
+            seed: An integer of at least 0 with at most 4,300 digits, whose children seed the
+                environments' streams; with ``gymnasium_episodes``, ``seed + i`` seeds environment
+                ``i``. Or a list with an integer or ``None`` for each environment. With ``None``
+                streams continue.
+            options: As in a single environment, and ``"reset_mask"``: an array of ``bool``;
+                environments whose element is false are neither seeded nor reset. ``"state"`` has
+                the shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all. Autoresets ignore
+                all options.
+
+        Returns:
+            The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
+            without ``info_parameters``.
+
+        Raises:
+            TypeError, ValueError, gymnasium.error.Error: If options or a seed are invalid.
+            RuntimeError: If another thread uses the environments.
+        """
+        self._check_open()
+        options = options or {}
+        low, high = arrays.reset_bounds(options, self._BOUND)
+        mask = arrays.reset_mask(options, self.num_envs)
+        states = None
+        if "state" in options:
+            states = arrays.states_of(self._each(options["state"]), self.num_envs)
+        child_of, seeds = arrays.seeds_of(seed, self.num_envs, self._gymnasium_episodes)
+        if seeds is not None and mask is not None:
+            seeds = [each if some else None for each, some in zip(seeds, mask, strict=True)]
+        self._native.reset(child_of, seeds, low, high, mask, states)
+        if not isinstance(seed, list | tuple):
+            super().reset(seed=arrays.plain_seed(seed))
+        self._ready = True
+        observations = self._empty() if self._observations is None else self._observations
+        self._native.observe(observations)
+        if self._gymnasium_episodes:
+            self._observe_initial_states(observations, self.elapsed_steps == 0)
+        return observations, self._parameter_infos()
+
+    def step(
+        self, actions: ArrayLike
+    ) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
+        """Step each environment. Other Python threads can run meanwhile.
+
+        Args:
+            actions: An element of ``action_space``, as an array or a list.
+
+        Returns:
+            Observations, of shape ``(num_envs, 6)``; rewards; where the goal was reached; where the
+            limit of steps was reached; and infos: the ``info_parameters`` of the new states, and in
+            mode ``SameStep``, if an episode ended, ``"final_obs"`` and ``"final_info"`` as in
+            ``SyncVectorEnv``.
+
+        Raises:
+            gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the
+                array.
+            gymnasium.error.ResetNeeded: Before the first reset. In mode ``Disabled`` also if an
+                episode has ended and its environment was not reset.
+            gymnasium.error.ClosedEnvironmentError: After ``close``.
+            RuntimeError: If another thread uses the environments.
+        """
+        self._check_ready()
+        last = self._parameter_infos() if self._same_step else {}
+        observations = self._empty() if self._observations is None else self._observations
+        finals = self._empty() if self._same_step else None
+        rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
+        infos = self._parameter_infos()
+        if finals is not None:
+            infos |= arrays.final_infos(finals, terminated | truncated, last)
+        if not self._gymnasium_episodes:
+            return observations, rewards, terminated, truncated, infos
+        if self._same_step:
+            self._observe_initial_states(observations, terminated | truncated)
+        elif not self._disabled:
+            self._observe_initial_states(observations, (rewards == 0) & ~terminated)
+        return observations, rewards.astype(np.float64), terminated, truncated, infos
+
+    @property
+    def state(self) -> NDArray[np.floating[Any]]:
+        """theta1, theta2 (rad) and their velocities (rad/s) of each: a read-only ``(num_envs, 4)``.
+
+        To set the states, assign an array of this shape. To set some, change rows of
+        ``state.copy()`` and assign it. Episodes and numbers of steps continue:
+        ``reset(options={"state": states})`` begins episodes instead. In mode ``NextStep`` the step
+        after an episode's end still resets, even if you set its state.
+        """
+        states = np.empty((self.num_envs, 4), np.float64)
+        self._native.states(states)
+        return read_only(states if self._float64 else states.astype(np.float32))
+
+    @state.setter
+    def state(self, states: ArrayLike) -> None:
+        self._native.set_states(arrays.states_of(states, self.num_envs))
+
+    def _each(self, states: Any) -> Any:
+        """A state for each environment, if there is one for all."""
+        try:
+            one = arrays.numbers("state", "four numbers", states, (4,))
+        except ValueError:
+            return states
+        return np.tile(one, (self.num_envs, 1))
+
+    @property
+    def elapsed_steps(self) -> NDArray[np.int64]:
+        """The number of steps of each environment's episode, of shape ``(num_envs,)``."""
+        elapsed = np.empty(self.num_envs, np.int64)
+        self._native.elapsed(elapsed)
+        return read_only(elapsed)
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """The value of an attribute for each environment, or the results of its method ``render``.
+
+        The error for an unknown name, an ``AttributeError``, lists the attributes.
+        """
+        self._check_open()
+        known = (*_ATTRIBUTES, *self._NAMES)
+        if name not in known:
+            they_have = f"they have {', '.join(known)}"
+            raise AttributeError(f"the environments have no attribute {name!r}; {they_have}")
+        if name in ("action_space", "observation_space"):
+            name = f"single_{name}"
+        if name == "render":
+            frames = self.render(*args, **kwargs)
+            return (None,) * self.num_envs if frames is None else frames
+        value = getattr(self, name)
+        if name in self._NAMES and isinstance(value, Drawn | np.ndarray):
+            values = self.get_parameter(name).tolist()
+            return tuple(map(tuple, values) if name == "AVAIL_TORQUE" else values)
+        return tuple(value) if name in ("state", "elapsed_steps") else (value,) * self.num_envs
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """As :meth:`call`."""
+        return self.call(name)
+
+    def get_parameter(self, name: str) -> NDArray[Any]:
+        """A parameter of each environment, in a new array with a row of 3 of ``AVAIL_TORQUE``."""
+        self._check_open()
+        if name not in self._NAMES:
+            they_have = f"they have {', '.join(self._NAMES)}"
+            raise AttributeError(f"the environments have no parameter {name!r}; {they_have}")
+        value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
+        if not isinstance(value, Drawn):
+            return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
+        rows = np.empty((self.num_envs, 3 if is_row else 1))
+        self._native.get(name, rows)
+        return rows if is_row else rows[:, 0]
+
+    def _parameter_infos(self) -> dict[str, Any]:
+        """The parameters that infos have, as SyncVectorEnv collects the infos of environments."""
+        infos = {name: self.get_parameter(name) for name in self.info_parameters}
+        return infos | {f"_{name}": np.ones(self.num_envs, np.bool_) for name in infos}
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Set a parameter or ``"state"``.
+
+        ``values`` is one value for all environments, or a list, tuple or array with a value for
+        each. A parameter can also be drawn, for example by an :class:`acrobot_rs.Uniform`.
+        """
+        self._check_open()
+        known = ("state", *self._NAMES)
+        if name not in known:
+            raise AttributeError(f"set_attr cannot set {name!r}; it can set {', '.join(known)}")
+        setattr(self, name, self._each(values) if name == "state" else values)
+
+    def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
+        """For each environment an array of shape ``(500, 500, 3)`` or a text, as the mode says.
+
+        Without a render mode, warns and returns ``None``.
+        """
+        self._check_open()
+        if self.render_mode is None:
+            self._warn_of_no_render_mode()
+            return None
+        if not self._ready:
+            raise ResetNeeded("the environments have no states yet; call reset before render")
+        return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Called by ``close``. Later calls raise ``ClosedEnvironmentError``."""
+        self._ready = False
+
+    def _check_open(self) -> None:
+        if self.closed:
+            raise ClosedEnvironmentError("the environments were closed; make new ones")
+
+    def _check_ready(self) -> None:
+        if not self._ready:
+            self._check_open()
+            raise ResetNeeded("the environments have no states yet; call reset before step")
+        if self._disabled and (index := self._native.first_ended()) is not None:
+            raise ResetNeeded(
+                f"the episode of environment {index} has ended; reset it before the next step, "
+                'with options={"reset_mask": terminated | truncated}'
+            )
+
+    def _empty(self) -> Floats:
+        return np.empty((self.num_envs, 6), np.float32)
+
+    def _observe_initial_states(self, observations: Floats, which: Bools) -> None:
+        """Write the observations of initial states, whose sines are NumPy's in ``float32``."""
+        if which.any():
+            angles = self.state[which, :2].astype(np.float32)
+            cosines, sines = np.cos(angles), np.sin(angles)
+            observations[which, :4] = np.stack([cosines, sines], axis=2).reshape(-1, 4)
 
 
 class AcrobotContinuousVectorEnv(AcrobotVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
