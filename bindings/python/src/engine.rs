@@ -123,25 +123,20 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
         let mut alone = Acrobot::<A, T>::new(0);
         for (index, value) in values.iter().cycle().take(count).enumerate() {
             let index_in_name = (values.len() > 1).then_some(index);
-            let given = with(self.params(index), &Name(name, [index_in_name, None]), value)?;
-            let tried = alone.set_params(given.cast()).and_then(|()| alone.draw_params(&draws));
-            tried.map_err(|error| invalid::<A::Scalar>(T::NAME, error, index_in_name, &[given]))?;
-            each.push(given.cast());
+            let name = Name(name, [index_in_name, None]);
+            let given = with::<A::Scalar>(self.params(index), name, value)?.cast();
+            let tried = alone.set_params(given).and_then(|()| alone.draw_params(&draws));
+            tried.map_err(|error| invalid(T::NAME, error, index_in_name))?;
+            each.push(given);
         }
-        let bits = |params: &Params<A::Scalar>| {
-            (params.dynamics, params.numbers().map(|(_, number)| number.to_f64().to_bits()))
-        };
-        if each.iter().all(|params| bits(params) == bits(&each[0])) {
+        if each.iter().all(|params| *params == each[0]) {
             self.batch.set_params(each[0])
         } else {
             self.batch.own_params().map_err(out_of_memory)?;
             let mut each = each.into_iter().enumerate();
             each.try_for_each(|(index, params)| self.batch.set_params_of(index, params))
         }
-        .and_then(|()| match draws == *self.batch.draws() {
-            true => Ok(()),
-            false => self.batch.set_draws(draws), // checks all acrobots
-        })
+        .and_then(|()| self.batch.set_draws(draws))
         .map_err(rejected)
     }
 
@@ -152,9 +147,9 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
             "Normal" => &["low", "high", "mean", "std"],
             _ => &["low", "high"],
         };
-        let given = numbers
-            .iter()
-            .map(|&number| with(Params::DEFAULT, &Name(name, [None; 2]), &drawn.getattr(number)?));
+        let given = numbers.iter().map(|&number| {
+            with::<A::Scalar>(Params::DEFAULT, Name(name, [None; 2]), &drawn.getattr(number)?)
+        });
         let given = given.collect::<PyResult<Vec<_>>>()?;
         let mut draws = *self.batch.draws().params();
         for place in places(name) {
@@ -169,7 +164,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
         if name == "LINK_MOI" {
             draws.inertia2 = Draw::AsBefore;
         }
-        let rejected = |error| invalid::<A::Scalar>(T::NAME, error, None, &given);
+        let rejected = |error| invalid(T::NAME, error, None);
         let draws = Draws::new(draws).map_err(rejected)?;
         match self.batch.set_draws(draws) {
             Err(Error::SharedParams) => {

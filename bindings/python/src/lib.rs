@@ -122,7 +122,7 @@ fn rejected(error: impl std::error::Error) -> PyErr {
 }
 
 /// The error of a rejected parameter of a task, of all environments or of one, with Python's name.
-fn invalid<S: Real>(task: &str, error: Error, index: Option<usize>, given: &[Params]) -> PyErr {
+fn invalid(task: &str, error: Error, index: Option<usize>) -> PyErr {
     let names: [(_, f64); NAMES.len()] = Params::DEFAULT.numbers();
     let Some(place) = names.iter().position(|(name, _)| *name == error.name()) else {
         return rejected(error);
@@ -132,28 +132,22 @@ fn invalid<S: Real>(task: &str, error: Error, index: Option<usize>, given: &[Par
         name => name,
     };
     let torque = places(name).position(|each| each == place).filter(|_| name == "AVAIL_TORQUE");
-    let given = given.iter().map(|params| params.numbers()[place].1);
-    out_of_range::<S>(error, Name(name, [index, torque]), given)
+    named(error, Name(name, [index, torque]))
 }
 
-/// The error of a rejected number with its name in Python. If `S` does not hold a number given, the
-/// message has this number, and not the infinity or the 0 that it becomes.
-fn out_of_range<S: Real>(
-    error: Error,
-    name: impl Display,
-    given: impl IntoIterator<Item = f64>,
-) -> PyErr {
-    let lost = given.into_iter().find(|&number| {
-        let held = S::from_f64(number).to_f64();
-        number.is_finite() && (held.is_infinite() || held == 0.0 && number != 0.0)
-    });
-    PyValueError::new_err(match lost {
-        Some(number) => {
-            let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
-            must_be(name, rule, format_args!("{number:?}"))
-        }
-        None => error.named(name).to_string(),
-    })
+/// The error of a rejected number, with its name in Python.
+fn named(error: Error, name: impl Display) -> PyErr {
+    PyValueError::new_err(error.named(name).to_string())
+}
+
+/// A number, unless the scalar `S` makes infinity or 0 of it.
+fn held<S: Real>(name: impl Display, number: f64) -> PyResult<f64> {
+    let held = S::from_f64(number).to_f64();
+    if number.is_finite() && (held.is_infinite() || held == 0.0 && number != 0.0) {
+        let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
+        return Err(PyValueError::new_err(must_be(name, rule, format_args!("{number:?}"))));
+    }
+    Ok(number)
 }
 
 /// Checks that the scalar `S` holds all states.
@@ -162,8 +156,8 @@ fn check_states<S: Real>(states: &[[f64; 4]]) -> PyResult<()> {
     for (index, state) in states.iter().enumerate() {
         if let Some(column) = state.iter().position(is_lost) {
             let name = format_args!("state[{index}, {column}]");
-            let checked = State::from(*state).cast::<S>().validate();
-            checked.map_err(|error| out_of_range::<S>(error, name, [state[column]]))?;
+            held::<S>(name, state[column])?;
+            State::from(*state).validate().map_err(|error| named(error, name))?;
         }
     }
     Ok(())
@@ -189,8 +183,8 @@ fn shown(value: &Bound<'_, PyAny>) -> String {
     text.unwrap_or_else(|_| format!("{}", value.get_type()))
 }
 
-/// The parameters with one of them changed.
-fn with(mut params: Params, name: &Name<'_>, value: &Bound<'_, PyAny>) -> PyResult<Params> {
+/// The parameters with one of them changed, for the scalar `S`.
+fn with<S: Real>(mut params: Params, name: Name<'_>, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     match name.0 {
         "AVAIL_TORQUE" => {
             let count = value.len().unwrap_or(3); // without a length, it is no sequence
@@ -198,18 +192,21 @@ fn with(mut params: Params, name: &Name<'_>, value: &Bound<'_, PyAny>) -> PyResu
                 let message = must_be(name, "3 numbers, such as [-2, 0, 2]", count);
                 return Err(PyValueError::new_err(message));
             }
-            params.torques = convert(name, "a sequence of 3 numbers", value)?;
+            params.torques = convert(&name, "a sequence of 3 numbers", value)?;
+            for (index, &torque) in params.torques.iter().enumerate() {
+                held::<S>(format_args!("{name}[{index}]"), torque)?;
+            }
         }
         "book_or_nips" => {
             let rule = "'book' or 'nips'";
-            params.dynamics = match convert(name, rule, value)? {
+            params.dynamics = match convert(&name, rule, value)? {
                 "book" => Dynamics::Book,
                 "nips" => Dynamics::Nips,
                 _ => return Err(PyValueError::new_err(must_be(name, rule, shown(value)))),
             }
         }
         _ => {
-            let number = convert(name, "a number", value)?;
+            let number = held::<S>(&name, convert(&name, "a number", value)?)?;
             places(name.0).for_each(|place| *params.numbers_mut()[place] = number);
         }
     }

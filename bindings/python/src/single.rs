@@ -10,8 +10,8 @@ use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    InvalidAction, Name, Params, alone, convert, invalid, load, must_be, out_of_range, rejected,
-    render, save, shown, torque_of, with,
+    InvalidAction, Name, Params, alone, convert, invalid, load, must_be, named, rejected, render,
+    save, shown, torque_of, with,
 };
 
 pyo3::import_exception!(gymnasium.error, ResetNeeded);
@@ -63,7 +63,7 @@ impl One {
 
     fn set_params(&mut self, params: Params) -> PyResult<()> {
         with_one!(self, acrobot => acrobot.set_params(params))
-            .map_err(|error| invalid::<f64>(self.task(), error, None, &[]))
+            .map_err(|error| invalid(self.task(), error, None))
     }
 
     fn state(&self) -> State {
@@ -104,12 +104,11 @@ impl Inner {
             return Err(PyValueError::new_err(message));
         }
         let params = Params { torque_noise: self.noise, ..self.acrobot.params() };
-        let rejected = |error| invalid::<f64>(self.acrobot.task(), error, None, &[]);
-        params.validate().map_err(rejected)?;
+        params.validate().map_err(|error| invalid(self.acrobot.task(), error, None))?;
         for (index, &torque) in self.torques.iter().enumerate() {
             let name = Name("AVAIL_TORQUE", [None, Some(index)]);
             let checked = Params { torques: [torque; 3], ..params }.validate();
-            checked.map_err(|error| out_of_range::<f64>(error, name, []))?;
+            checked.map_err(|error| named(error, name))?;
         }
         Ok(())
     }
@@ -140,7 +139,7 @@ impl Acrobot {
             "AVAIL_TORQUE" => inner.torques = convert(name, "a sequence of numbers", value)?,
             "torque_noise_max" => inner.noise = convert(name, "a number", value)?,
             _ => {
-                let params = with(inner.acrobot.params(), &Name(name, [None; 2]), value)?;
+                let params = with::<f64>(inner.acrobot.params(), Name(name, [None; 2]), value)?;
                 inner.acrobot.set_params(params)?;
             }
         }

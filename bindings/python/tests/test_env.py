@@ -47,10 +47,9 @@ def test_the_observation_space_contains_initial_states_above_the_bounds_of_veloc
 
 def test_registration_and_spaces_are_those_of_gymnasium():
     ours, theirs = gymnasium.make(V1), gymnasium.make("Acrobot-v1")
-    assert ours.observation_space == theirs.observation_space
-    assert ours.action_space == theirs.action_space
+    for name in ("observation_space", "action_space"):
+        assert getattr(ours, name) == getattr(theirs, name)
     assert ours.metadata["render_fps"] == theirs.metadata["render_fps"]
-    assert ours.spec.reward_threshold == theirs.spec.reward_threshold
     limits = {V1: 500, V0: 200, CONTINUOUS: 500} | dict.fromkeys(SWINGUPS, 1000)
     for name, limit in limits.items():
         env = make(name)
@@ -79,12 +78,8 @@ def test_pictures(env):
 
     with pytest.warns(UserWarning, match="without a render mode"):
         assert env.render() is None
-    with pytest.warns(UserWarning, match="'text' that is not in the possible render_modes"):
-        unknown = gymnasium.make(V1, render_mode="text")
-    assert unknown.render_mode == "text"
-    unknown.reset()
     with pytest.raises(ValueError, match="render_mode must be .*, got 'text'"):
-        unknown.unwrapped.render()
+        AcrobotEnv("text").render()
 
 
 def test_a_window_shows_each_reset_and_step(monkeypatch):
@@ -110,11 +105,7 @@ def test_a_window_shows_each_reset_and_step(monkeypatch):
     assert env.render() is None and shown.call_count == 6
     pygame.display.set_mode.assert_called_once_with((500, 500))
     pygame.time.Clock.return_value.tick.assert_called_with(15)
-    twin = copy.deepcopy(env).unwrapped
-    assert twin.screen is None
-    twin.render_mode = None
-    twin.step(0)
-    assert shown.call_count == 6
+    assert copy.deepcopy(env).unwrapped.screen is None
     env.close()
     assert pygame.quit.called and env.unwrapped.screen is None and not env.unwrapped.isopen
 
@@ -162,16 +153,11 @@ def test_invalid_options_are_rejected(env):
             env.reset(seed=1, options={"low": value})
 
 
-def test_the_first_step_needs_a_reset():
-    env = AcrobotEnv()
-    assert env.state is None
-    with pytest.raises(AssertionError, match="reset"):
-        env.step(0)
-
-
 @pytest.mark.parametrize("steps", [0, 1])
 def test_elements_of_the_state_can_be_assigned(env, steps):
     """`test_parity.py` compares with Gymnasium."""
+    with pytest.raises(AssertionError, match="reset"):  # as Gymnasium's
+        AcrobotEnv().step(0)
     for _ in range(steps):
         env.step(2)
     assert env.state is env.state
@@ -218,12 +204,6 @@ def test_an_unknown_name_is_rejected(kind):
     type("Own", (kind,), {})().curriculum_level = 3
 
 
-def test_a_wrapper_sets_a_parameter():
-    env = gymnasium.make(V1)
-    env.set_wrapper_attr("LINK_MASS_1", 5.0)
-    assert env.unwrapped.LINK_MASS_1 == 5.0
-
-
 def test_spaces_follow_the_parameters():
     env, samples = AcrobotContinuousEnv(), []
     for _ in range(2):
@@ -244,11 +224,12 @@ def test_a_new_environment_copies_its_class_s_parameters():
     class Heavy(AcrobotEnv):
         LINK_MASS_1 = 3.0
 
-    heavy, plain = Heavy(), AcrobotEnv()
+    heavy, plain = Heavy(), gymnasium.make(V1)
     with unittest.mock.patch.object(Heavy, "LINK_MASS_1", 2.0):
         later = Heavy()
-    plain.LINK_MASS_1 = 4.0
-    for env, mass in {heavy: 3.0, later: 2.0, plain: 4.0, Heavy(LINK_MASS_1=6.0): 6.0}.items():
+    plain.set_wrapper_attr("LINK_MASS_1", 4.0)
+    masses = {heavy: 3.0, later: 2.0, plain.unwrapped: 4.0, Heavy(LINK_MASS_1=6.0): 6.0}
+    for env, mass in masses.items():
         other = AcrobotEnv(LINK_MASS_1=mass)
         assert env.LINK_MASS_1 == mass
         for each in (env, other):
@@ -269,9 +250,9 @@ def test_values_cannot_change_in_place(env):
     assert env.LINK_MASS_1 == 2.0 and env.AVAIL_TORQUE == (-2.0, 0.0, 2.0)
 
 
-@pytest.mark.parametrize("torques", [[-1.0, 0.0, 1.0], [0.5, -3.0, 2.0]])
-def test_continuous_torques_are_those_of_the_discrete_environment(torques):
+def test_continuous_torques_are_those_of_the_discrete_environment():
     """Between and at the bounds. Torques outside are clipped."""
+    torques = [0.5, -3.0, 2.0]
     low, inside, high = min(torques), float(np.float32(0.3)), max(torques)
     below, within = {-np.inf: low, low - 1: low}, {low: low, inside: inside, high: high}
     actions = below | within | {high + 1: high, np.inf: high}
@@ -288,6 +269,3 @@ def test_continuous_torques_are_those_of_the_discrete_environment(torques):
         action = kinds[step % len(kinds)]([list(actions)[index]])
         found, expected = ours.step(action), discrete.step(index)
         assert (found[0] == expected[0]).all() and found[1:] == expected[1:], step
-    ours.AVAIL_TORQUE = [-0.1, 0.1]
-    discrete.AVAIL_TORQUE = [0.1]
-    assert (ours.step([1.0])[0] == discrete.step(0)[0]).all()

@@ -25,13 +25,10 @@ def make(name, **kwargs):
     return gymnasium.make_vec(name, num_envs=3, vectorization_mode="vector_entry_point", **kwargs)
 
 
-def test_all_tasks_have_vector_environments():
-    assert len(SINGLES) == 5 and len(VECTORS) == 4
-
-
 @vectors
 def test_gymnasium_s_class_is_a_direct_base(name):
     """skrl looks at nothing else."""
+    assert len(SINGLES) == 5 and len(VECTORS) == 4
     assert VectorEnv in type(make(name)).__bases__
 
 
@@ -82,15 +79,11 @@ def test_specs_and_parameters_make_the_same_environment_again(name):
     if name in VECTORS:
         draws = {"dt": LogUniform(0.1, 0.2), "gravity": Normal(9.8, 0.1, 9.0, 10.0)}
         draws["AVAIL_TORQUE"] = Uniform([-2, 0, 1], [-1, 0, 2])
-        arguments = {"max_episode_steps": 7, "autoreset_mode": "Disabled", "copy": False}
-        envs = make(name, LINK_MASS_1=[1, 2, 3], **arguments, **draws)
-        twin = gymnasium.make_vec(envs.spec)
-        assert (twin.reset(seed=1)[0] == envs.reset(seed=1)[0]).all()
-        names = ("num_envs", "metadata", *arguments)
-        assert all(getattr(twin, each) == getattr(envs, each) for each in names)
-        for each in (twin, type(envs)(3, **envs.parameters)):
-            np.testing.assert_equal(each.parameters, envs.parameters)
-        assert {name: twin.parameters[name] for name in draws} == draws
+        envs = make(name, LINK_MASS_1=[1, 2, 3], max_episode_steps=7, **draws)
+        for twin in (gymnasium.make_vec(envs.spec), type(envs)(3, 7, **envs.parameters)):
+            assert (twin.reset(seed=1)[0] == envs.reset(seed=1)[0]).all()
+            np.testing.assert_equal(twin.parameters, envs.parameters)
+            assert twin.num_envs == 3 and twin.max_episode_steps == 7
 
 
 @vectors
@@ -112,7 +105,7 @@ def test_attributes_of_each_environment(name):
         assert (envs.state == state).all() and get("elapsed_steps") == (1 + count,) * 3
         envs.step(envs.action_space.sample())
     for unknown in ("length", "elapsed_steps"):
-        with rejects(envs, AttributeError, f"cannot set '{unknown}'; it can set state"):
+        with rejects(envs, AttributeError, unknown):
             envs.set_attr(unknown, 1.0)
     with pytest.warns(UserWarning, match="without a render mode"):
         assert make(name).render() is None
@@ -169,11 +162,9 @@ def test_a_single_episode_begins_in_a_given_state(name):
             env.unwrapped.reset(seed=2, options={"state": bad})
 
 
-@vectors
-def test_without_a_limit_no_episode_is_truncated(name):
-    envs = make(name, max_episode_steps=None, autoreset_mode="SameStep")
+def test_without_a_limit_no_episode_is_truncated():
+    envs = make("acrobot_rs/Acrobot-v1", max_episode_steps=None)
     envs.reset(seed=1)
-    assert envs.max_episode_steps is None and envs.get_attr("max_episode_steps") == (None,) * 3
-    idle = np.full(envs.action_space.shape, 0 if envs.action_space.dtype == np.float32 else 1)
-    assert not any(envs.step(idle)[3].any() for _ in range(1200))
-    assert (envs.elapsed_steps == 1200).all()
+    assert envs.get_attr("max_episode_steps") == (None,) * 3
+    assert not any(envs.step([1] * 3)[3].any() for _ in range(600))
+    assert (envs.elapsed_steps == 600).all()

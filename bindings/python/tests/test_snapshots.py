@@ -66,7 +66,7 @@ def test_copies_continue_bit_identically(kind, again):
     envs = made(*kind)
     twin = again(envs)
     assert twin._native.__getstate__() == envs._native.__getstate__()
-    np.testing.assert_equal(play(envs, 300), play(twin, 300))
+    np.testing.assert_equal(play(envs, 100), play(twin, 100))
     for name in envs._NAMES:
         np.testing.assert_equal(getattr(envs, name), getattr(twin, name))
     again(kind[0]())  # also before the first reset

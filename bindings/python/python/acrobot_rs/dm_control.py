@@ -63,9 +63,6 @@ class Environment(dm_env.Environment):
             time_limit: The length of an episode, s; ``math.inf`` for no limit.
             flat_observation: Whether the observation is one array, ``"observations"``.
             **parameters: Those of :class:`acrobot_rs.AcrobotSwingupEnv`.
-
-        Raises:
-            TypeError, ValueError: If an argument is invalid.
         """
         if task_name not in _TASKS:
             raise must_be("task_name", f"one of {list(_TASKS)}", repr(task_name))

@@ -118,9 +118,6 @@ class AcrobotEnv(
 
         Returns:
             The observation of the initial state, and an empty info.
-
-        Raises:
-            TypeError, ValueError, gymnasium.error.Error: If options or the seed are invalid.
         """
         options = options or {}
         low, high = reset_bounds(options, self._BOUND)
@@ -161,11 +158,6 @@ class AcrobotEnv(
         Returns:
             The observation; the reward; whether the step reaches the goal; ``False``, because the
             wrapper of ``gymnasium.make`` truncates; and an empty info.
-
-        Raises:
-            gymnasium.error.InvalidAction: If the action is another one.
-            ValueError: If a number that is not finite was assigned to an element of ``state``.
-            AssertionError: If the environment was never reset.
         """
         result = self._native.step(self, action)
         if self.render_mode == "human":

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import reprlib
 import struct
-import warnings
 import zlib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -66,9 +65,6 @@ class Policy:
 
 def load(path: str | Path) -> Policy:
     """Read a file of :func:`save` or :func:`write`.
-
-    Raises:
-        ValueError: If the file is another one, or damaged.
     """
     file = Path(path).read_bytes()
     try:
@@ -123,9 +119,6 @@ def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None 
         layers: The first has 6 inputs; the last has 3 outputs, the scores of the actions, or 1, a
             torque, N m.
         torque_limit: The largest torque, N m, of a policy with one output. ``None`` for scores.
-
-    Raises:
-        ValueError: If a shape, an activation or a number is wrong. No file is written then.
     """
     Path(path).write_bytes(_content(layers, torque_limit))
 
@@ -179,13 +172,8 @@ def save(
         observations: On which the file's actions are compared with the model's: an array of shape
             ``(n, 6)``. By default 2,000 of random episodes.
         torque_limit: The largest torque, N m, of a ``Sequential`` with one output. Of a model of
-            Stable-Baselines3, the torque of its largest action. By default this is the action
-            itself, and in a swing-up the largest in its environment's ``AVAIL_TORQUE``.
-
-    Raises:
-        TypeError: If the model, or a layer, is of another kind.
-        ValueError: If a shape or a number is wrong, if the file's actions would differ from the
-            model's, or if a ``Sequential`` is not in evaluation mode. No file is written then.
+            Stable-Baselines3, the torque of its largest action: by default this action itself, and
+            of a swing-up no default.
     """
     policy = getattr(model, "policy", None)
     if policy is None and not isinstance(model, Iterable):
@@ -203,8 +191,9 @@ def save(
         if not 0 < high == -low < np.inf:
             name, got = "the bounds of the action space", f"{low} and {high}"
             raise must_be(name, "finite and opposite", got)
-        if torque_limit is None:
-            torque_limit = _largest_torque(model.get_env()) if is_swingup else high
+        if torque_limit is None and is_swingup:
+            raise must_be("torque_limit", "the torque of the swing-up's action 1, N m", None)
+        torque_limit = high if torque_limit is None else torque_limit
         scale = _checked(torque_limit) / high
         weights, biases, activation = layers[-1]
         layers[-1] = (weights * scale, biases * scale, activation)
@@ -212,11 +201,7 @@ def save(
     note = ""
     if normalize is not None and normalize.norm_obs:
         mean, deviation = normalize.obs_rms.mean, np.sqrt(normalize.obs_rms.var + normalize.epsilon)
-        bounds = policy.observation_space.high
-        if ((bounds + abs(mean)) / deviation > normalize.clip_obs).any():
-            clip = f"at clip_obs={normalize.clip_obs:g}"
-            note = f". VecNormalize clips extreme observations, {clip}, and the file does not"
-            warnings.warn(note[2:], stacklevel=2)
+        note = f". VecNormalize clips at clip_obs={normalize.clip_obs:g}, and the file does not"
         weights, biases, activation = layers[0]
         layers[0] = (weights / deviation, biases - weights @ (mean / deviation), activation)
     content = _content(layers, torque_limit)
@@ -240,18 +225,6 @@ def save(
         where = f"they differ on {differ.sum()} of {len(seen)} observations{note}"
         raise ValueError(f"the file's actions must be those of the model; {where}")
     Path(path).write_bytes(content)
-
-
-def _largest_torque(envs: Any) -> float:
-    """The torque of the action 1 in the environments of a swing-up, N m."""
-    what = "the model has no environment"
-    if envs is not None:
-        every = envs.get_attr("AVAIL_TORQUE")
-        torques = {torque for each in every for torque in (max(each), -min(each))}
-        if len(torques) == 1:
-            return float(torques.pop())
-        what = f"largest and negated smallest of AVAIL_TORQUE differ: {sorted(torques)}"
-    raise ValueError(f"torque_limit must be the torque of the action 1, N m, because {what}")
 
 
 def _modules_of(policy: Any) -> tuple[list[Any], int]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from gymnasium.error import ClosedEnvironmentError, InvalidAction, ResetNeeded
+from gymnasium.error import InvalidAction, ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
@@ -61,7 +61,7 @@ class AcrobotVectorEnv(
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    #: Whether it was reset and not closed.
+    #: Whether it was reset.
     _ready = False
 
     def __init__(
@@ -95,10 +95,6 @@ class AcrobotVectorEnv(
             float64: Whether to compute in ``float64``, with correctly rounded sines. Steps take
                 longer.
             **parameters: Parameters, for example ``LINK_MASS_1=2.0``.
-
-        Raises:
-            TypeError, ValueError: If an argument is invalid.
-            MemoryError: If the environments do not fit into memory.
         """
         if render_mode not in (None, *self.metadata["render_modes"]):
             rule = f"None or one of {self.metadata['render_modes']}"
@@ -184,12 +180,7 @@ class AcrobotVectorEnv(
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
             without ``info_parameters``.
-
-        Raises:
-            TypeError, ValueError, gymnasium.error.Error: If options or a seed are invalid.
-            RuntimeError: If another thread uses the environments.
         """
-        self._check_open()
         options = options or {}
         low, high = arrays.reset_bounds(options, self._BOUND)
         mask = arrays.reset_mask(options, self.num_envs)
@@ -222,16 +213,14 @@ class AcrobotVectorEnv(
             limit of steps was reached; and infos: the ``info_parameters`` of the new states, and in
             mode ``SameStep``, if an episode ended, ``"final_obs"`` and ``"final_info"`` as in
             ``SyncVectorEnv``.
-
-        Raises:
-            gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the
-                array.
-            gymnasium.error.ResetNeeded: Before the first reset. In mode ``Disabled`` also if an
-                episode has ended and its environment was not reset.
-            gymnasium.error.ClosedEnvironmentError: After ``close``.
-            RuntimeError: If another thread uses the environments.
         """
-        self._check_ready()
+        if not self._ready:
+            raise ResetNeeded("the environments have no states yet; call reset before step")
+        if self._disabled and (index := self._native.first_ended()) is not None:
+            raise ResetNeeded(
+                f"the episode of environment {index} has ended; reset it before the next step, "
+                'with options={"reset_mask": terminated | truncated}'
+            )
         last = self._parameter_infos() if self._same_step else {}
         observations = self._empty() if self._observations is None else self._observations
         finals = self._empty() if self._same_step else None
@@ -284,20 +273,17 @@ class AcrobotVectorEnv(
 
         The error for an unknown name, an ``AttributeError``, lists the attributes.
         """
-        self._check_open()
         known = (*_ATTRIBUTES, *self._NAMES)
         if name not in known:
             they_have = f"they have {', '.join(known)}"
             raise AttributeError(f"the environments have no attribute {name!r}; {they_have}")
-        if name in ("action_space", "observation_space"):
-            name = f"single_{name}"
         if name == "render":
             frames = self.render(*args, **kwargs)
             return (None,) * self.num_envs if frames is None else frames
-        value = getattr(self, name)
-        if name in self._NAMES and isinstance(value, Drawn | np.ndarray):
+        if name in self._NAMES:
             values = self.get_parameter(name).tolist()
             return tuple(map(tuple, values) if name == "AVAIL_TORQUE" else values)
+        value = getattr(self, f"single_{name}" if name.endswith("_space") else name)
         return tuple(value) if name in ("state", "elapsed_steps") else (value,) * self.num_envs
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
@@ -306,10 +292,6 @@ class AcrobotVectorEnv(
 
     def get_parameter(self, name: str) -> NDArray[Any]:
         """A parameter of each environment, in a new array with a row of 3 of ``AVAIL_TORQUE``."""
-        self._check_open()
-        if name not in self._NAMES:
-            they_have = f"they have {', '.join(self._NAMES)}"
-            raise AttributeError(f"the environments have no parameter {name!r}; {they_have}")
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
@@ -328,10 +310,6 @@ class AcrobotVectorEnv(
         ``values`` is one value for all environments, or a list, tuple or array with a value for
         each. A parameter can also be drawn, for example by an :class:`acrobot_rs.Uniform`.
         """
-        self._check_open()
-        known = ("state", *self._NAMES)
-        if name not in known:
-            raise AttributeError(f"set_attr cannot set {name!r}; it can set {', '.join(known)}")
         setattr(self, name, self._each(values) if name == "state" else values)
 
     def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
@@ -339,31 +317,12 @@ class AcrobotVectorEnv(
 
         Without a render mode, warns and returns ``None``.
         """
-        self._check_open()
         if self.render_mode is None:
             self._warn_of_no_render_mode()
             return None
         if not self._ready:
             raise ResetNeeded("the environments have no states yet; call reset before render")
         return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
-
-    def close_extras(self, **kwargs: Any) -> None:
-        """Called by ``close``. Later calls raise ``ClosedEnvironmentError``."""
-        self._ready = False
-
-    def _check_open(self) -> None:
-        if self.closed:
-            raise ClosedEnvironmentError("the environments were closed; make new ones")
-
-    def _check_ready(self) -> None:
-        if not self._ready:
-            self._check_open()
-            raise ResetNeeded("the environments have no states yet; call reset before step")
-        if self._disabled and (index := self._native.first_ended()) is not None:
-            raise ResetNeeded(
-                f"the episode of environment {index} has ended; reset it before the next step, "
-                'with options={"reset_mask": terminated | truncated}'
-            )
 
     def _empty(self) -> Floats:
         return np.empty((self.num_envs, 6), np.float32)
