@@ -122,10 +122,7 @@ def test_models_of_stable_baselines3_are_saved_with_their_own_actions(kind, norm
 
 @pytest.mark.parametrize(
     ("model", "given", "limit", "factor"),
-    [
-        (actor(2.5), None, 2.5, 1.0),
-        (swingup_actor(), 3.0, 3.0, 3.0),
-    ],
+    [(actor(2.5), None, 2.5, 1.0), (swingup_actor(), 3.0, 3.0, 3.0)],
 )
 def test_an_action_is_a_torque_or_in_a_swing_up_becomes_one(model, given, limit, factor, tmp_path):
     policy.save(model, tmp_path / "p", torque_limit=given)

@@ -51,16 +51,10 @@ def test_an_episode_that_reaches_the_goal_at_the_limit_is_not_truncated():
     assert infos[0]["TimeLimit.truncated"] is False and infos[1]["TimeLimit.truncated"] is True
 
 
-class Infos(gymnasium.Wrapper):
-    """Infos with a parameter, and ``set_attr`` of DummyVecEnv sets the wrapped environment's."""
+class Settable(gymnasium.Wrapper):
+    """``set_attr`` of DummyVecEnv sets the wrapped environment's parameters."""
 
     SETTINGS = "dt", "LINK_MASS_1", "book_or_nips", "torque_noise_max"
-
-    def reset(self, **kwargs):
-        return self.env.reset(**kwargs)[0], {"dt": self.unwrapped.dt}
-
-    def step(self, action):
-        return *self.env.step(action)[:4], {"dt": self.unwrapped.dt}
 
     def __setattr__(self, name, value):
         if name in self.SETTINGS:
@@ -87,8 +81,8 @@ def outcome(call, envs):
 def test_attributes_and_methods_are_those_of_dummy_vec_env(name, mode, wrap):
     """With Gymnasium's episodes, after random calls. The adapter's docstring names the others."""
     arguments = {"render_mode": mode, "max_episode_steps": 70}
-    theirs = DummyVecEnv([lambda: Infos(gymnasium.make(name, **arguments))] * 5)
-    ours = make(5, gymnasium_episodes=True, info_parameters=["dt"], **arguments)
+    theirs = DummyVecEnv([lambda: Settable(gymnasium.make(name, **arguments))] * 5)
+    ours = make(5, gymnasium_episodes=True, **arguments)
     names = "action_space", "num_envs", "observation_space", "render_mode", "reset_infos"
     both = wrap(theirs), wrap(ours)
 
@@ -122,7 +116,7 @@ def test_attributes_and_methods_are_those_of_dummy_vec_env(name, mode, wrap):
             ("set_options", {"low": -number}),
             ("reset",),
             *(("set_attr", each, "nips" if each == "book_or_nips" else number, some)
-              for each in Infos.SETTINGS),
+              for each in Settable.SETTINGS),
             *(("get_attr", attribute, some), ("get_attr", "length"), ("env_method", "length")),
             *(("has_attr", each) for each in (attribute, "state", "spec", "length")),
             ("env_is_wrapped", gymnasium.wrappers.RecordVideo, some),
@@ -173,17 +167,6 @@ def test_a_range_is_for_all_environments():
         assert envs.envs.dt == 0.2 and envs.get_attr("dt") == [0.2] * 3
     with pytest.raises(ValueError, match=message):
         envs.set_attr("dt", drawn, indices=[0])
-
-
-def test_infos_have_the_parameters_of_the_episode():
-    envs = make(3, max_episode_steps=2, dt=acrobot_rs.LogUniform(0.1, 0.3), info_parameters=["dt"])
-    envs.reset()
-    for ended in (False, True):
-        before = envs.get_attr("dt")
-        infos = envs.step(np.ones(3, int))[3]
-        assert [info["dt"] for info in infos] == before
-        assert envs.reset_infos == [{"dt": dt} for dt in envs.get_attr("dt")]
-        assert (envs.get_attr("dt") != before) == ended
 
 
 def test_other_environments_are_rejected():

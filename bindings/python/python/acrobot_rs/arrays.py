@@ -149,18 +149,12 @@ def warn_of_other_sines() -> None:
         )
 
 
-def final_infos(
-    finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dict[str, Any]
-) -> dict[str, Any]:
-    """Infos as in ``SyncVectorEnv``: last observations and infos, and which episodes ended.
-
-    An observation is ``None`` where no episode ended.
-    """
+def final_infos(finals: NDArray[np.float32], ended: NDArray[np.bool_]) -> dict[str, Any]:
+    """Infos as in ``SyncVectorEnv``: last observations, ``None`` where no episode ended."""
     if not ended.any():
         return {}
     final_obs = np.full(len(ended), None, dtype=object)
     for index in np.flatnonzero(ended):
         final_obs[index] = finals[index].copy()
-    infos = {name: ended.copy() if name[0] == "_" else value for name, value in last.items()}
     masks = {"_final_obs": ended, "_final_info": ended.copy()}
-    return {"final_obs": final_obs, "final_info": infos, **masks}
+    return {"final_obs": final_obs, "final_info": {}, **masks}

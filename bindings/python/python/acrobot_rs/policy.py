@@ -64,8 +64,7 @@ class Policy:
 
 
 def load(path: str | Path) -> Policy:
-    """Read a file of :func:`save` or :func:`write`.
-    """
+    """Read a file of :func:`save` or :func:`write`."""
     file = Path(path).read_bytes()
     try:
         policy = _read(file)

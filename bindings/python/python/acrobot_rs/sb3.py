@@ -60,16 +60,9 @@ class AcrobotVecEnv(VecEnv):
         if any(each != options for each in others):
             raise must_be("options", "the same for all environments", self._options)
         observations, _ = self.envs.reset(seed=self._seeds, options=options)
-        self.reset_infos = self._infos()
         self._reset_seeds()
         self._reset_options()
         return observations
-
-    def _infos(self) -> list[dict[str, Any]]:
-        """The parameters that infos have."""
-        names = self.envs.info_parameters
-        columns = {name: self.envs.get_parameter(name).tolist() for name in names}
-        return [{name: columns[name][index] for name in names} for index in range(self.num_envs)]
 
     def step_async(self, actions: NDArray[Any]) -> None:
         self._actions = actions
@@ -77,16 +70,13 @@ class AcrobotVecEnv(VecEnv):
     def step_wait(
         self,
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
-        # Those of the ended episode, if one ends, as in DummyVecEnv.
-        each = self._infos()
         observations, rewards, terminated, truncated, infos = self.envs.step(self._actions)
         ended = terminated | truncated
-        for info, only in zip(each, (truncated & ~terminated).tolist(), strict=True):
-            info["TimeLimit.truncated"] = only
-        new = self._infos() if ended.any() else []
+        each: list[dict[str, Any]] = [
+            {"TimeLimit.truncated": only} for only in (truncated & ~terminated).tolist()
+        ]
         for index in np.flatnonzero(ended):
             each[index]["terminal_observation"] = infos["final_obs"][index]
-            self.reset_infos[index] = new[index]
         return observations, rewards.astype(np.float32, copy=False), ended, each
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:

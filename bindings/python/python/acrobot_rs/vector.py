@@ -73,7 +73,6 @@ class AcrobotVectorEnv(
         copy: bool = True,
         gymnasium_episodes: bool = False,
         threads: int | None = 1,
-        info_parameters: Sequence[str] = (),
         float64: bool = False,
         **parameters: Numbers | ManyTorques | ManyEquations,
     ) -> None:
@@ -91,7 +90,6 @@ class AcrobotVectorEnv(
                 ``SyncVectorEnv``, bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are.
             threads: The threads that compute a step; ``None``: as many as the process has cores.
                 They help above 16,384 environments, or 1,024 in ``float64``.
-            info_parameters: Parameters that ``infos`` have, as arrays from :meth:`get_parameter`.
             float64: Whether to compute in ``float64``, with correctly rounded sines. Steps take
                 longer.
             **parameters: Parameters, for example ``LINK_MASS_1=2.0``.
@@ -124,7 +122,6 @@ class AcrobotVectorEnv(
         self.num_envs = num_envs
         self.max_episode_steps = max_episode_steps
         self.copy = copy
-        self.info_parameters = tuple(info_parameters)
         #: The array that all calls return, or ``None`` if each returns a new one.
         self._observations = None if copy else self._empty()
         self._same_step = mode is AutoresetMode.SAME_STEP
@@ -132,7 +129,6 @@ class AcrobotVectorEnv(
         self._gymnasium_episodes = gymnasium_episodes
         self._float64 = gymnasium_episodes or float64
         super().__init__(native, render_mode, parameters)
-        self._parameter_infos()  # rejects unknown names
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
         single = super()._spaces()
@@ -178,8 +174,7 @@ class AcrobotVectorEnv(
                 all options.
 
         Returns:
-            The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
-            without ``info_parameters``.
+            The observations of all environments, of shape ``(num_envs, 6)``, and empty infos.
         """
         options = options or {}
         low, high = arrays.reset_bounds(options, self._BOUND)
@@ -198,7 +193,7 @@ class AcrobotVectorEnv(
         self._native.observe(observations)
         if self._gymnasium_episodes:
             self._observe_initial_states(observations, self.elapsed_steps == 0)
-        return observations, self._parameter_infos()
+        return observations, {}
 
     def step(
         self, actions: ArrayLike
@@ -210,9 +205,8 @@ class AcrobotVectorEnv(
 
         Returns:
             Observations, of shape ``(num_envs, 6)``; rewards; where the goal was reached; where the
-            limit of steps was reached; and infos: the ``info_parameters`` of the new states, and in
-            mode ``SameStep``, if an episode ended, ``"final_obs"`` and ``"final_info"`` as in
-            ``SyncVectorEnv``.
+            limit of steps was reached; and infos: in mode ``SameStep``, if an episode ended,
+            ``"final_obs"`` and ``"final_info"`` as in ``SyncVectorEnv``.
         """
         if not self._ready:
             raise ResetNeeded("the environments have no states yet; call reset before step")
@@ -221,13 +215,10 @@ class AcrobotVectorEnv(
                 f"the episode of environment {index} has ended; reset it before the next step, "
                 'with options={"reset_mask": terminated | truncated}'
             )
-        last = self._parameter_infos() if self._same_step else {}
         observations = self._empty() if self._observations is None else self._observations
         finals = self._empty() if self._same_step else None
         rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
-        infos = self._parameter_infos()
-        if finals is not None:
-            infos |= arrays.final_infos(finals, terminated | truncated, last)
+        infos = {} if finals is None else arrays.final_infos(finals, terminated | truncated)
         if not self._gymnasium_episodes:
             return observations, rewards, terminated, truncated, infos
         if self._same_step:
@@ -298,11 +289,6 @@ class AcrobotVectorEnv(
         rows = np.empty((self.num_envs, 3 if is_row else 1))
         self._native.get(name, rows)
         return rows if is_row else rows[:, 0]
-
-    def _parameter_infos(self) -> dict[str, Any]:
-        """The parameters that infos have, as SyncVectorEnv collects the infos of environments."""
-        infos = {name: self.get_parameter(name) for name in self.info_parameters}
-        return infos | {f"_{name}": np.ones(self.num_envs, np.bool_) for name in infos}
 
     def set_attr(self, name: str, values: Any) -> None:
         """Set a parameter or ``"state"``.
