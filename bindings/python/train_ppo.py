@@ -1,5 +1,4 @@
 """Trains PPO with JAX on the vector environment until the mean return of 100 episodes passes -100.
-One file, as in CleanRL.
 
     pip install -r requirements-train.txt .
     python train_ppo.py                        seeds 1, 2 and 3
@@ -40,8 +39,7 @@ optimizer = optax.chain(
 
 
 def layers(key, outputs, gain):
-    """Weights and biases of a perceptron with two hidden layers of 64 units. Weights are
-    orthogonal, as is usual for PPO."""
+    """Weights and biases of a perceptron with two hidden layers of 64 units."""
     sizes = [6, 64, 64, outputs]
     gains = [2**0.5, 2**0.5, gain]
     return [
@@ -74,7 +72,7 @@ def values(parameters, observations):
 
 @jax.jit
 def act(parameters, key, observations):
-    """Draws actions from the policy. Returns them and the key of the next draw."""
+    """Actions that the policy draws, and the key of the next draw."""
     key, draw = jax.random.split(key)
     return jax.random.categorical(draw, log_probabilities(parameters, observations)), key
 
@@ -82,9 +80,7 @@ def act(parameters, key, observations):
 def roll_out(envs, parameters, key, observations):
     """Plays STEPS in each environment.
 
-    Returns arrays of shape (STEPS, ENVS, ...): observations, actions, following observations,
-    rewards, whether the episode terminated and whether it ended. Also returns the last
-    observations, and the key of the next draw.
+    Returns arrays of shape (STEPS, ENVS, ...), the last observations, and the key of the next draw.
     """
     rollout = []
     for _ in range(STEPS):
@@ -103,13 +99,9 @@ def roll_out(envs, parameters, key, observations):
 
 def advantages(parameters, observations, seen, rewards, terminated, ended):
     """Generalized advantage estimates."""
-    # A truncated episode has not terminated, so the value of its last observation estimates the
-    # rest.
-    errors = (
-        rewards
-        + DISCOUNT * ~terminated * values(parameters, seen)
-        - values(parameters, observations)
-    )
+    # The value of a truncated episode's last observation estimates the rest.
+    following = DISCOUNT * ~terminated * values(parameters, seen)
+    errors = rewards + following - values(parameters, observations)
 
     def back(advantage, step):
         error, ended = step
@@ -134,7 +126,7 @@ def loss(parameters, batch):
 
 @jax.jit
 def learn(parameters, state, key, rollout):
-    """Optimizes for EPOCHS over the rollout. Returns the parameters and the optimizer's state."""
+    """The parameters and the optimizer's state after EPOCHS over the rollout."""
     observations, actions, seen, rewards, terminated, ended = rollout
     advantage = advantages(parameters, observations, seen, rewards, terminated, ended)
     targets = advantage + values(parameters, observations)
@@ -173,8 +165,7 @@ def evaluate(envs, parameters, key):
 
 
 def train(seed):
-    """Trains until an evaluation passes. Returns the parameters, the steps and the last mean
-    return."""
+    """The parameters, the steps and the mean return, as soon as an evaluation passes."""
     envs = gymnasium.make_vec(
         NAME, num_envs=ENVS, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP
     )
@@ -209,8 +200,7 @@ def save(parameters, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    words = "integers of at least 0; default 1 2 3"
-    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help=words)
+    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3])
     parser.add_argument("--save", help="file for the policy of the last seed")
     arguments = parser.parse_args()
     gymnasiums = gymnasium.make_vec("Acrobot-v1", num_envs=EPISODES, vectorization_mode="sync")
