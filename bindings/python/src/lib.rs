@@ -10,7 +10,7 @@ use std::fmt::{self, Display, Formatter};
 use acrobot::arithmetic::{Damped, Host, Real};
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::Dynamics;
-use acrobot::task::{Gymnasium, GymnasiumV0, ResetBounds, Swingup, Task};
+use acrobot::task::{Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::{Acrobot, Error, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
@@ -31,8 +31,6 @@ mod _native {
     const REWARD_THRESHOLD: f32 = acrobot::REWARD_THRESHOLD;
     #[pymodule_export]
     const MAX_STEPS: u32 = Gymnasium::MAX_STEPS.get();
-    #[pymodule_export]
-    const V0_MAX_STEPS: u32 = GymnasiumV0::MAX_STEPS.get();
     #[pymodule_export]
     const SWINGUP_MAX_STEPS: u32 = Swingup::MAX_STEPS.get();
     #[pymodule_export]
@@ -222,11 +220,7 @@ fn render<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let mode = match mode {
         "rgb_array" => RenderMode::RgbArray,
-        "ansi" => RenderMode::Ansi,
-        _ => {
-            let message = must_be("render_mode", "'rgb_array' or 'ansi'", format_args!("'{mode}'"));
-            return Err(PyValueError::new_err(message));
-        }
+        _ => RenderMode::Ansi,
     };
     let mut env = AcrobotEnv::new(Acrobot::<Damped<Host>>::new(0), mode);
     env.set_params(params).map_err(rejected)?;

@@ -82,8 +82,6 @@ impl One {
 /// What a snapshot contains.
 #[derive(Clone, Serialize, Deserialize)]
 struct Inner {
-    /// Whether observations are those of `Acrobot-v0`.
-    angles: bool,
     /// Whether actions are torques.
     continuous: bool,
     /// Without noise and with the default torques: the crate has three.
@@ -117,11 +115,10 @@ impl Inner {
 #[pymethods]
 impl Acrobot {
     #[new]
-    #[pyo3(signature = (angles = false, continuous = false, task = "acrobot"))]
-    fn new(angles: bool, continuous: bool, task: &str) -> Self {
+    #[pyo3(signature = (continuous = false, task = "acrobot"))]
+    fn new(continuous: bool, task: &str) -> Self {
         let acrobot = One::new(task);
         let inner = Inner {
-            angles,
             continuous,
             torques: acrobot.params().torques.into(),
             acrobot,
@@ -221,12 +218,7 @@ impl Acrobot {
         let step = this.inner.acrobot.step(torque)?;
         this.lent = None;
         this.inner.single = false;
-        let observation = if this.inner.angles {
-            let state: [f32; 4] = this.inner.acrobot.state().cast().into();
-            PyArray1::from_slice(py, &state)
-        } else {
-            PyArray1::from_slice(py, &step.observation)
-        };
+        let observation = PyArray1::from_slice(py, &step.observation);
         Ok((observation, f64::from(step.reward), step.terminated, false, PyDict::new(py)))
     }
 

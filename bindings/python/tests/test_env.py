@@ -1,19 +1,15 @@
 """The single environment passes Gymnasium's checks, and rejects what Gymnasium's rejects."""
 
-import copy
 import pickle
-import sys
 import unittest.mock
 
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env, Uniform
+from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, Uniform
 from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
 from vectors import CONTINUOUS, KINDS, SWINGUPS, V1, rejects
-
-V0 = "acrobot_rs/Acrobot-v0"
 
 
 @pytest.fixture
@@ -24,25 +20,14 @@ def env():
     return env
 
 
-def make(name, **kwargs):
-    if name != V0:
-        return gymnasium.make(name, **kwargs)
-    with pytest.warns(DeprecationWarning, match="out of date"):  # because there is a v1
-        return gymnasium.make(name, **kwargs)
-
-
-@pytest.mark.parametrize("name", [V1, V0, CONTINUOUS, *SWINGUPS])
+@pytest.mark.parametrize("name", [V1, CONTINUOUS, *SWINGUPS])
 @pytest.mark.filterwarnings("ignore:.*infinity")
-def test_gymnasium_checks_pass_without_a_warning(name, monkeypatch):
-    # The check opens a window.
-    monkeypatch.setitem(sys.modules, "pygame", unittest.mock.MagicMock())
-    check_env(make(name, render_mode="rgb_array").unwrapped)
+def test_gymnasium_checks_pass_without_a_warning(name):
+    check_env(gymnasium.make(name, render_mode="rgb_array").unwrapped)
 
 
-@pytest.mark.parametrize("base", [AcrobotEnv, AcrobotV0Env])
-def test_the_observation_space_contains_initial_states_above_the_bounds_of_velocity(base):
-    slow = type("Slow", (base,), {"MAX_VEL_1": 1e-30, "MAX_VEL_2": 0.05})
-    check_env(slow(), skip_render_check=True)
+def test_the_observation_space_contains_initial_states_above_the_bounds_of_velocity():
+    check_env(AcrobotEnv(MAX_VEL_1=1e-30, MAX_VEL_2=0.05), skip_render_check=True)
 
 
 def test_registration_and_spaces_are_those_of_gymnasium():
@@ -50,14 +35,13 @@ def test_registration_and_spaces_are_those_of_gymnasium():
     for name in ("observation_space", "action_space"):
         assert getattr(ours, name) == getattr(theirs, name)
     assert ours.metadata["render_fps"] == theirs.metadata["render_fps"]
-    limits = {V1: 500, V0: 200, CONTINUOUS: 500} | dict.fromkeys(SWINGUPS, 1000)
+    limits = {V1: 500, CONTINUOUS: 500} | dict.fromkeys(SWINGUPS, 1000)
     for name, limit in limits.items():
-        env = make(name)
+        env = gymnasium.make(name)
         assert env.spec.reward_threshold == (None if name in SWINGUPS else -100)
         env.reset(seed=1)
-        ends = [env.step(1 if name in (V0, V1) else [0.0])[3] for _ in range(limit)]
+        ends = [env.step(1 if name == V1 else [0.0])[3] for _ in range(limit)]
         assert ends == [False] * (limit - 1) + [True]
-    assert make(V0).observation_space.contains(np.float32([np.pi, np.pi, 4 * np.pi, 9 * np.pi]))
 
 
 def test_pictures(env):
@@ -79,35 +63,9 @@ def test_pictures(env):
     with pytest.warns(UserWarning, match="without a render mode"):
         assert env.render() is None
     with pytest.raises(ValueError, match="render_mode must be .*, got 'text'"):
-        AcrobotEnv("text").render()
-
-
-def test_a_window_shows_each_reset_and_step(monkeypatch):
-    """Without a display: pygame is replaced by an object that records the calls."""
-    monkeypatch.setitem(sys.modules, "pygame", None)
-    with pytest.raises(gymnasium.error.DependencyNotInstalled, match="pygame is not installed"):
-        AcrobotEnv("human").reset()
-
-    # With Gymnasium's wrapper for windows this would warn.
-    env = gymnasium.make(V1, render_mode="human")
-    pygame = unittest.mock.MagicMock()
-    pygame.display.set_mode.return_value = window = object()
-    monkeypatch.setitem(sys.modules, "pygame", pygame)
-    picture = AcrobotEnv("rgb_array")
-    shown = pygame.surfarray.blit_array
-    env.reset(seed=1)
-    for calls in range(1, 5):
-        assert shown.call_count == pygame.display.flip.call_count == calls
-        picture.state = env.unwrapped.state
-        assert shown.call_args[0][0] is window
-        assert (shown.call_args[0][1] == picture.render().swapaxes(0, 1)).all()
-        env.step(2)
-    assert env.render() is None and shown.call_count == 6
-    pygame.display.set_mode.assert_called_once_with((500, 500))
-    pygame.time.Clock.return_value.tick.assert_called_with(15)
-    assert copy.deepcopy(env).unwrapped.screen is None
-    env.close()
-    assert pygame.quit.called and env.unwrapped.screen is None and not env.unwrapped.isopen
+        AcrobotEnv("text")
+    with pytest.warns(UserWarning, match="HumanRendering wrapper is being applied"):
+        assert gymnasium.make(V1, render_mode="human").unwrapped.render_mode == "rgb_array"
 
 
 @pytest.mark.parametrize(

@@ -126,11 +126,3 @@ def test_without_gravity_and_torque_an_acrobot_stays():
     env.state = at_rest = [1.0, 2.0, 0.0, 0.0]
     env.step(1)
     assert list(env.state) == at_rest
-
-
-def test_v0_observes_the_state():
-    env = acrobot_rs.AcrobotV0Env()
-    observation, _ = env.reset(seed=9)
-    for action in np.random.default_rng(9).integers(3, size=100):
-        assert (observation == env.state.astype(np.float32)).all()
-        observation = env.step(action)[0]

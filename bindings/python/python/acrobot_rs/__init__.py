@@ -1,7 +1,7 @@
 """Gymnasium's Acrobot in Rust: bit-identical episodes, and a much faster vector environment.
 
-Importing this package registers ``Acrobot-v1``, ``AcrobotContinuous-v0`` and ``Acrobot-v0``, and
-dm_control's ``AcrobotSwingup-v0`` and ``AcrobotSwingupSparse-v0``, all after ``acrobot_rs/``:
+Importing this package registers ``Acrobot-v1`` and ``AcrobotContinuous-v0``, and dm_control's
+``AcrobotSwingup-v0`` and ``AcrobotSwingupSparse-v0``, all after ``acrobot_rs/``:
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -17,8 +17,8 @@ from importlib.metadata import version
 from gymnasium.envs.registration import register
 
 from acrobot_rs import policy
-from acrobot_rs._native import MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS, V0_MAX_STEPS
-from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env
+from acrobot_rs._native import MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS
+from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv
 from acrobot_rs.parameters import LogUniform, Normal, Uniform
 from acrobot_rs.swingup import (
     AcrobotSwingupEnv,
@@ -36,7 +36,6 @@ __all__ = [
     "AcrobotSwingupSparseEnv",
     "AcrobotSwingupSparseVectorEnv",
     "AcrobotSwingupVectorEnv",
-    "AcrobotV0Env",
     "AcrobotVectorEnv",
     "LogUniform",
     "Normal",
@@ -53,15 +52,13 @@ def __dir__() -> list[str]:
 for _kind, _id, _steps, _threshold in (
     ("Acrobot", "Acrobot-v1", MAX_STEPS, REWARD_THRESHOLD),
     ("AcrobotContinuous", "AcrobotContinuous-v0", MAX_STEPS, REWARD_THRESHOLD),
-    ("AcrobotV0", "Acrobot-v0", V0_MAX_STEPS, REWARD_THRESHOLD),
     ("AcrobotSwingup", "AcrobotSwingup-v0", SWINGUP_MAX_STEPS, None),
     ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", SWINGUP_MAX_STEPS, None),
 ):
-    _vector = f"{_kind}VectorEnv"
     register(
         id=f"acrobot_rs/{_id}",
         entry_point=f"acrobot_rs:{_kind}Env",
-        vector_entry_point=f"acrobot_rs:{_vector}" if _vector in __all__ else None,
+        vector_entry_point=f"acrobot_rs:{_kind}VectorEnv",
         reward_threshold=_threshold,
         max_episode_steps=_steps,
     )

@@ -7,7 +7,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium.error import DependencyNotInstalled, InvalidAction
+from gymnasium.error import InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
@@ -53,8 +53,9 @@ class AcrobotEnv(
 
     ## Arguments
 
-    ``render_mode``: ``None``, ``"human"`` (a window, by pygame), ``"rgb_array"`` or ``"ansi"``
-    (braille characters). And parameters, for example ``LINK_MASS_1=2.0``.
+    ``render_mode``: ``None``, ``"rgb_array"`` or ``"ansi"`` (braille characters), and with
+    ``gymnasium.make`` also ``"human"`` (a window, by pygame). And parameters, for example
+    ``LINK_MASS_1=2.0``.
 
     A rejected call raises an error that says what is valid, and changes nothing.
 
@@ -67,27 +68,15 @@ class AcrobotEnv(
     (6,)
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array", "ansi"], "render_fps": 15}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 15}
 
     _native: Acrobot
 
     def __init__(
         self, render_mode: str | None = None, **parameters: float | Torques | Equations
     ) -> None:
-        """Make an environment. Reset it before its first step.
-
-        ``render`` rejects an unknown render mode, because ``gymnasium.make`` only warns of it.
-        """
-        # The window, by the names of Gymnasium's environment.
-        self.screen: Any = None
-        self.clock: Any = None
-        self.isopen = True
-        native = Acrobot(self._ANGLES, self._CONTINUOUS, self._TASK)
-        super().__init__(native, render_mode, parameters)
-
-    def __getstate__(self) -> dict[str, Any]:
-        """All but the window, which a copy opens itself."""
-        return {**vars(self), "screen": None, "clock": None}
+        """Make an environment. Reset it before its first step."""
+        super().__init__(Acrobot(self._CONTINUOUS, self._TASK), render_mode, parameters)
 
     @property
     def state(self) -> NDArray[np.floating[Any]] | None:
@@ -130,10 +119,7 @@ class AcrobotEnv(
                 if not np.isfinite(given.astype(np.float32)).all():
                     raise must_be("state", rule, given)
         super().reset(seed=seed)
-        observation = self._begin(low, high, given)
-        if self.render_mode == "human":
-            self.render()
-        return observation, {}
+        return self._begin(low, high, given), {}
 
     def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
         """Draw an initial state, which a given one replaces, and observe it."""
@@ -141,8 +127,6 @@ class AcrobotEnv(
         s = self.np_random.uniform(low, high, 4).astype(np.float32)
         self.state = s if given is None else given
         s = s if given is None else given.astype(np.float32)
-        if self._ANGLES:
-            return s
         # Gymnasium's calls of NumPy, whose float32 sines are its own.
         sines = [function(angle) for angle in s[:2] for function in (np.cos, np.sin)]
         return np.array([*sines, *s[2:]], dtype=np.float32)
@@ -159,46 +143,17 @@ class AcrobotEnv(
             The observation; the reward; whether the step reaches the goal; ``False``, because the
             wrapper of ``gymnasium.make`` truncates; and an empty info.
         """
-        result = self._native.step(self, action)
-        if self.render_mode == "human":
-            self.render()
-        return result
+        return self._native.step(self, action)
 
     def render(self) -> NDArray[np.uint8] | str | None:
-        """An array of shape ``(500, 500, 3)`` or a text, or with ``"human"`` a window.
+        """An array of shape ``(500, 500, 3)`` or a text.
 
         Without a render mode, warns and returns ``None``.
         """
         if self.render_mode is None:
             self._warn_of_no_render_mode()
             return None
-        if self.render_mode != "human":
-            return self._native.render(self.render_mode)
-        self._show(self._native.render("rgb_array"))
-        return None
-
-    def _show(self, frame: Any) -> None:
-        try:
-            import pygame
-        except ImportError as error:
-            message = 'pygame is not installed, run `pip install "gymnasium[classic-control]"`'
-            raise DependencyNotInstalled(message) from error
-        if self.screen is None:
-            pygame.display.init()
-            self.screen = pygame.display.set_mode((self.SCREEN_DIM, self.SCREEN_DIM))
-            self.clock = pygame.time.Clock()
-        pygame.surfarray.blit_array(self.screen, frame.swapaxes(0, 1))
-        pygame.event.pump()
-        self.clock.tick(self.metadata["render_fps"])
-        pygame.display.flip()
-
-    def close(self) -> None:
-        if self.screen is not None:
-            import pygame
-
-            pygame.display.quit()
-            pygame.quit()
-            self.screen, self.isopen = None, False
+        return self._native.render(self.render_mode)
 
 
 class AcrobotContinuousEnv(AcrobotEnv):
@@ -222,13 +177,3 @@ class AcrobotContinuousEnv(AcrobotEnv):
         if math.isnan(torque):
             raise must_be("action", rule, repr(action), InvalidAction)
         return torque
-
-
-class AcrobotV0Env(AcrobotEnv):
-    """``Acrobot-v0``, which Gymnasium has removed: :class:`AcrobotEnv`, which observes the state.
-
-    The observation is theta1, theta2 (within pi, rad) and their velocities, ``float32``.
-    ``gymnasium.make`` truncates episodes after 200 steps.
-    """
-
-    _ANGLES = True

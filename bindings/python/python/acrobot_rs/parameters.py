@@ -86,8 +86,6 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
     #: The equations of motion: of Sutton and Barto's book, or as printed in the 1996 paper.
     book_or_nips: EachEquations = "book"
 
-    SCREEN_DIM = 500  #: width and height of pictures, pixels; cannot change
-
     metadata: dict[str, Any]
     spec: Any
     render_mode: str | None
@@ -101,8 +99,6 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
     #: Whether actions are numbers in a ``Box``, and what they are.
     _CONTINUOUS = False
     _ACTION = "a torque in N m"
-    #: Whether the observation is the state itself, as in ``Acrobot-v0``.
-    _ANGLES = False
 
     def __init__(
         self, native: Acrobot | Batch, render_mode: str | None, parameters: Mapping[str, Any]
@@ -112,6 +108,9 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
             # Other programs, such as torchrl, look for Python's words.
             words = f"{type(self).__name__}.__init__() got an unexpected keyword argument {name!r}"
             raise TypeError(f"{words}; the parameters are {', '.join(self._NAMES)}")
+        modes = self.metadata["render_modes"]
+        if render_mode not in (None, *modes):
+            raise must_be("render_mode", f"None or one of {modes}", repr(render_mode))
         self._native = native
         self.render_mode = render_mode
         # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
@@ -146,8 +145,7 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
         else:
             torques = getattr(self.AVAIL_TORQUE, "low", self.AVAIL_TORQUE)
             actions = spaces.Discrete(np.shape(torques)[-1])
-        others = [np.pi] * 2 if self._ANGLES else [1.0] * 4
-        highest = np.array([*others, *velocities], dtype=np.float32)
+        highest = np.array([1.0, 1.0, 1.0, 1.0, *velocities], dtype=np.float32)
         return {
             "action_space": actions,
             "observation_space": spaces.Box(-highest, highest, dtype=np.float32),

@@ -94,9 +94,6 @@ class AcrobotVectorEnv(
                 longer.
             **parameters: Parameters, for example ``LINK_MASS_1=2.0``.
         """
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            rule = f"None or one of {self.metadata['render_modes']}"
-            raise must_be("render_mode", rule, repr(render_mode))
         if threads is None:
             has_affinity = hasattr(os, "sched_getaffinity")
             threads = len(os.sched_getaffinity(0)) if has_affinity else os.cpu_count() or 1
