@@ -7,8 +7,8 @@ use acrobot::numpy::SeedSequence;
 use acrobot::task::ResetBounds;
 use acrobot::{Error, ResetOptions, State};
 use numpy::{
-    PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2,
-    PyUntypedArrayMethods,
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1,
+    PyReadwriteArray2, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -150,7 +150,7 @@ impl Batch {
         slf: &Bound<'py, Self>,
         env: &Bound<'py, PyAny>,
         actions: &Bound<'py, PyAny>,
-        mut observations: PyReadwriteArray2<'py, f32>,
+        observations: &Bound<'py, PyArray2<f32>>,
         mut finals: Option<PyReadwriteArray2<'py, f32>>,
     ) -> PyResult<impl IntoPyObject<'py>> {
         let py = slf.py();
@@ -167,6 +167,7 @@ impl Batch {
         let mut rewards = memory(0.0, len)?;
         let mut terminated = memory(false, len)?;
         let mut truncated = memory(false, len)?;
+        let mut observations = observations.try_readwrite()?; // all calls can share this array
         let rows = observations.as_slice_mut()?.as_chunks_mut().0;
         let mut buffers =
             StepBuffers::new(&mut rewards, &mut terminated, &mut truncated).with_observations(rows);

@@ -1,6 +1,6 @@
 """The single environment is bit-identical to Gymnasium's, which runs beside it.
 
-With 2,000 configurations instead of 300: ``python -m pytest --hypothesis-profile=long
+With 2,000 configurations instead of 150: ``python -m pytest --hypothesis-profile=long
 tests/test_parity.py``.
 """
 
@@ -115,7 +115,7 @@ def test_configurations(monkeypatch):
     """All parameters, changed during episodes too, resets with and without bounds, and states set
     by hand."""
     monkeypatch.setattr(acrobot, "wrap", wrap)
-    count = 2000 if settings.get_current_profile_name() == "long" else 300
+    count = 2000 if settings.get_current_profile_name() == "long" else 150
     skipped = sum(compare(seed) for seed in range(count))
     assert skipped < 0.1 * count * STEPS
 

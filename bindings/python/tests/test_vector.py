@@ -243,10 +243,13 @@ def test_a_call_of_another_thread_during_a_call_is_rejected(kind):
     assert env.dt == 0.2
 
 
-@pytest.mark.parametrize("kind", [AcrobotEnv, AcrobotVectorEnv])
-def test_threads_that_share_an_environment_step_one_after_the_other_or_not(kind):
+@pytest.mark.parametrize("arguments", [None, {"copy": True}, {"copy": False}])
+def test_threads_that_share_an_environment_step_one_after_the_other_or_not(arguments):
     """Also without Python's lock: the steps that raised no error are those that were made."""
-    (env, twin), action = (kind(), kind()), 2 if kind is AcrobotEnv else [2]
+    if arguments is None:
+        env, twin, action = AcrobotEnv(), AcrobotEnv(), 2
+    else:
+        env, twin, action = make_vec(100, **arguments), make_vec(100), [2] * 100
     for each in env, twin:
         each.reset(seed=1)
 
