@@ -118,11 +118,3 @@ def test_configurations(monkeypatch):
     count = 2000 if settings.get_current_profile_name() == "long" else 150
     skipped = sum(compare(seed) for seed in range(count))
     assert skipped < 0.1 * count * STEPS
-
-
-def test_without_gravity_and_torque_an_acrobot_stays():
-    """Gymnasium's environment has no name for gravity."""
-    env = acrobot_rs.AcrobotEnv(gravity=0.0)
-    env.state = at_rest = [1.0, 2.0, 0.0, 0.0]
-    env.step(1)
-    assert list(env.state) == at_rest

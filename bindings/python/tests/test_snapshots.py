@@ -80,7 +80,6 @@ DAMAGED = "the snapshot is damaged"
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
-        (lambda good: b"", DAMAGED),
         (lambda good: good[:-1], DAMAGED),
         (lambda good: good.replace(number(0.25), NAN), DAMAGED),
         (lambda good: good.replace(MINE, b"\0"), "AVAIL_TORQUE must be one or more"),
@@ -95,10 +94,3 @@ def test_damaged_snapshots_are_rejected(damage, message):
     assert damage(good) != good
     with rejects(env, ValueError, message):
         env._native.__setstate__(damage(good))
-
-
-def test_a_damaged_state_beyond_float32_is_one_of_float64():
-    env = AcrobotEnv()
-    env.state = np.float32([1, 2, 3, 4])
-    env._native.__setstate__(env._native.__getstate__().replace(number(3), number(1e300)))
-    assert list(env.state) == [1, 2, 1e300, 4]

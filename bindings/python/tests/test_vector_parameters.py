@@ -1,11 +1,9 @@
 """Parameters of each environment: values, draws, and what reads them."""
 
-import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotVectorEnv
-from acrobot_rs import LogUniform, Normal, Uniform
+from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotVectorEnv, LogUniform, Normal, Uniform
 from vectors import make_vec, rejects
 
 
@@ -29,7 +27,7 @@ def test_a_rejected_parameter_changes_nothing(error, name, value, message, gymna
     for mass in (1.0, [1.0, 1.5, 2.0], Uniform(1.0, 2.0), LogUniform(1.0, 2.0)):
         envs.LINK_MASS_1 = mass
         envs.reset(seed=1)
-        for attempt in (setattr, acrobot_rs.AcrobotVectorEnv.set_attr):
+        for attempt in (setattr, AcrobotVectorEnv.set_attr):
             with rejects(envs, error, message if "LINK_MOI" in message else f"^{name}{message}"):
                 attempt(envs, name, value)
 
@@ -49,7 +47,7 @@ def test_the_number_given_is_in_the_message(name, value, number):
         setattr(envs, name, value)
 
 
-@pytest.mark.parametrize("name", [*set(AcrobotVectorEnv._NAMES) - {"book_or_nips"}])
+@pytest.mark.parametrize("name", sorted({*AcrobotVectorEnv._NAMES} - {"book_or_nips"}))
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
 def test_resets_draw_a_parameter_and_keep_others(name, gymnasium_episodes):
     """`test_recorded.py` has the order and the numbers of draws."""

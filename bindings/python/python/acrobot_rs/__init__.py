@@ -44,11 +44,6 @@ __all__ = [
 ]
 __version__ = version("acrobot-rs")
 
-
-def __dir__() -> list[str]:
-    return [*__all__, "__version__"]
-
-
 for _kind, _id, _steps, _threshold in (
     ("Acrobot", "Acrobot-v1", MAX_STEPS, REWARD_THRESHOLD),
     ("AcrobotContinuous", "AcrobotContinuous-v0", MAX_STEPS, REWARD_THRESHOLD),

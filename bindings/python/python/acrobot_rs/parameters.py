@@ -185,10 +185,8 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
         return copy.deepcopy(self)
 
     def _warn_of_no_render_mode(self) -> None:
-        logger.warn(
-            "render returns None, because the environment was made without a render mode, such as "
-            f'render_mode="rgb_array", by {self.spec.id if self.spec else type(self).__name__}'
-        )
+        what = 'it was made without a render mode, such as render_mode="rgb_array"'
+        logger.warn(f"render of {type(self).__name__} returns None, because {what}")
 
 
 _PUBLIC = (name for name in Parameters.__annotations__ if not name.startswith("_"))
