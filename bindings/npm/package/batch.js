@@ -2,12 +2,12 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, TASKS, addressOf as addressOfKept, elements, indexOf, isAction, isFinite32, keep,
-  orFree, readChanges, readGivenState, readParams, readState, seedSample, setState, writeParams,
+  ACTION, Kept, TASKS, addressOf, call, changeParams, elements, indexOf, isAction, isFinite32,
+  orFree, readParams, readState, setState, writeSeed,
 } from "./kept.js";
 import { load, save } from "./snapshot.js";
 import {
-  checked, copied, integers, invalid, numbers, positive, typeOf, wasm, writeSeed,
+  checked, copied, integers, invalid, numbers, positive, randomSeed, wasm,
 } from "./wasm.js";
 
 /**
@@ -27,232 +27,209 @@ const ARRAYS = {
 };
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
-/** As a private getter it would throw an error that does not name the class. */
-const addressOf = (batch) => addressOfKept(batch, "batch");
-
 export class Batch extends Kept {
-  static get name() {
-    return "Batch";
-  }
-
   #settings;
   /** The addresses of the arrays. */
   #addresses;
-  /** The names of the results. */
-  #names;
-  /** Views of the arrays. */
-  #views;
-  /** Copies of the results: views of the module's memory end when that memory grows. */
+  /** Views of the arrays, which end when the module's memory grows. */
+  #views = {};
+  /** Copies of the results. */
   #results = {};
   /** Whether states have changed since the observations were written. */
   #stale = false;
 
   constructor(options) {
-    super();
     const names = ["count", "seed", "params", "maxSteps", "autoreset", "ownParams", "task"];
     const given = checked("options", options, [...names, "draws"]);
-    const { count, seed, params = {}, autoreset = AUTORESETS[0], task = TASKS[0] } = given;
-    const { maxSteps, draws, ownParams = draws !== undefined } = given;
+    const { count, seed = randomSeed(), params = {}, maxSteps, draws } = given;
+    const { autoreset = AUTORESETS[0], ownParams = draws !== undefined, task = TASKS[0] } = given;
     const index = indexOf("task", TASKS, task);
     positive("count", count);
     const limit = maxSteps === undefined ? 0 : positive("maxSteps", maxSteps);
     const mode = indexOf("autoreset", AUTORESETS, autoreset);
-    if (![true, false].includes(ownParams)) {
+    if (typeof ownParams !== "boolean") {
       throw invalid("ownParams must be true or false", ownParams, []);
     }
-    keep(this, "batch", wasm().batch_new(count, limit, mode, ownParams, index), count);
+    super("batch", wasm().batch_new(count, limit, mode, ownParams, index), count);
     orFree(this, () => {
       this.setParams(params);
       if (draws !== undefined) this.setDraws(draws);
-      wasm().batch_reset(addressOf(this), writeSeed(seed), false);
       this.#open();
+      this.reset(seed);
+      this.sample(randomSeed());
     });
-  }
-
-  /** Reads what does not change except by `restore`. */
-  #open() {
-    wasm().batch_open(addressOf(this));
-    const [count, maxSteps, mode, own, task, ...addresses] = integers().slice(0, 14);
-    const [autoreset, ownParams] = [AUTORESETS[mode], own === 1];
-    const settings = { count, maxSteps, autoreset, ownParams, task: TASKS[task] };
-    this.#settings = Object.freeze(settings);
-    this.#addresses = addresses;
-    this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
-    this.#results = {};
-    this.#views = undefined;
-    this.#copy(...this.#names);
-    this.#observe();
-  }
-
-  /** Copies results out of the module's memory. */
-  #copy(...names) {
-    if (!this.#views?.rewards.length) {
-      const { buffer } = wasm().memory;
-      const views = Object.entries(ARRAYS).map(([name, [Type, width]], i) => {
-        return [name, new Type(buffer, this.#addresses[i], width * this.#settings.count)];
-      });
-      this.#views = Object.fromEntries(views);
-    }
-    for (const name of names) {
-      // An array that the caller has transferred to another thread has no elements.
-      if (this.#results[name]?.length) this.#results[name].set(this.#views[name]);
-      else this.#results[name] = this.#views[name].slice();
-    }
-  }
-
-  #observe() {
-    wasm().batch_observe(addressOf(this));
-    this.#copy("observations");
-    this.#stale = false;
-  }
-
-  /** The batch's address, for a use of acrobot `index`. */
-  static #addressFor(batch, index, what = "") {
-    const address = addressOf(batch);
-    if (!Number.isInteger(index) || index < 0 || index >= batch.count) {
-      throw invalid(`${what}index must be an integer from 0 to ${batch.count - 1}`, index);
-    }
-    return address;
-  }
-
-  get count() {
-    addressOf(this);
-    return this.#settings.count;
-  }
-
-  get settings() {
-    addressOf(this);
-    return this.#settings;
-  }
-
-  get observations() {
-    addressOf(this);
-    if (this.#stale || !this.#results.observations.length) this.#observe();
-    return this.#results.observations;
-  }
-
-  reset(seed) {
-    addressOf(this);
-    return this.#reset(undefined, seed);
-  }
-
-  resetMasked(mask, seed) {
-    addressOf(this);
-    const isFlag = (element) => [true, false, 1, 0].includes(element);
-    const rule = "must be true, false, 1 or 0";
-    return this.#reset(elements("mask", mask, this.count, isFlag, rule), seed);
-  }
-
-  #reset(mask, seed) {
-    const address = addressOf(this);
-    const words = seed === undefined ? 0 : writeSeed(seed);
-    this.#copy();
-    if (mask) this.#views.mask.set(mask);
-    wasm().batch_reset(address, words, mask !== undefined);
-    this.#observe();
-    return this.#results.observations;
-  }
-
-  sample(seed) {
-    wasm().batch_sample(addressOf(this), seedSample(this, seed));
-    this.#copy();
-    return this.#views.actions.slice();
-  }
-
-  step(actions) {
-    addressOf(this);
-    return this.#step("actions", actions, isAction, ACTION);
-  }
-
-  stepTorque(torques) {
-    addressOf(this);
-    return this.#step("torques", torques, isFinite32, "must be a finite number of N m");
-  }
-
-  #step(what, given, isValid, rule) {
-    const [{ name, BYTES_PER_ELEMENT }] = ARRAYS[what];
-    const size = this.#settings.count * BYTES_PER_ELEMENT;
-    // The module can check elements of this type.
-    const isRead = typeOf(given) === name && given.byteLength === size;
-    // Reading others can run code that frees the batch or makes memory grow, so it comes first.
-    const inputs = isRead ? given : elements(what, given, this.#settings.count, isValid, rule);
-    const address = addressOf(this);
-    this.#copy();
-    const written = this.#views[what];
-    written.set(inputs);
-    if (!wasm().batch_step(address, what === "torques")) {
-      const index = written.findIndex((each) => !isValid(each));
-      throw invalid(`${what}[${index}] ${rule}`, written[index]);
-    }
-    this.#copy(...this.#names);
-    this.#stale = false;
-    return { ...this.#results };
-  }
-
-  stateOf(index) {
-    wasm().batch_state(Batch.#addressFor(this, index), index);
-    return readState();
-  }
-
-  setStateOf(index, state) {
-    Batch.#addressFor(this, index);
-    const given = readGivenState(state);
-    setState("batch", addressOf(this), given, index);
-    this.#stale = true;
-  }
-
-  get states() {
-    const [address, states] = [addressOf(this), new Float32Array(4 * this.#settings.count)];
-    for (let i = 0; i < this.#settings.count; i++) {
-      wasm().batch_state(address, i);
-      states.set(numbers().subarray(0, 4), 4 * i);
-    }
-    return states;
-  }
-
-  setStates(states) {
-    addressOf(this);
-    const rule = (i) => `must be a finite number of ${i % 4 < 2 ? "rad" : "rad/s"}`;
-    const given = elements("states", states, 4 * this.#settings.count, isFinite32, rule);
-    const address = addressOf(this);
-    for (let i = 0; i < this.#settings.count; i++) {
-      numbers().set(given.slice(4 * i, 4 * i + 4));
-      wasm().batch_set_state(address, i);
-    }
-    this.#stale = true;
-  }
-
-  elapsedStepsOf(index) {
-    return wasm().batch_elapsed_steps(Batch.#addressFor(this, index), index) >>> 0;
-  }
-
-  paramsOf(index) {
-    return readParams("batch", Batch.#addressFor(this, index), index);
-  }
-
-  setParamsOf(index, changes) {
-    Batch.#addressFor(this, index);
-    const given = readChanges(changes);
-    writeParams("batch", addressOf(this), given, index);
-  }
-
-  snapshot() {
-    return save("batch", addressOf(this));
   }
 
   static restore(snapshot) {
     const copy = copied("the snapshot", snapshot);
     const batch = new this({ count: 1 });
     orFree(batch, () => {
-      load("batch", addressOf(batch), copy);
+      load(batch, copy);
       batch.#open();
     });
     return batch;
   }
 
+  /** Reads what does not change except by `restore`. */
+  #open() {
+    call(this, "settings");
+    const [count, maxSteps, mode, own, task] = integers();
+    const [autoreset, ownParams] = [AUTORESETS[mode], own === 1];
+    this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams, task: TASKS[task] });
+    call(this, "arrays");
+    this.#addresses = integers().slice(0, 9);
+    this.#views = {};
+    this.#results = {};
+    this.#copyResults();
+    this.#observe();
+  }
+
+  /** The view of an array. */
+  #view(name) {
+    if (!this.#views[name]?.length) {
+      const [Type, width] = ARRAYS[name];
+      const address = this.#addresses[Object.keys(ARRAYS).indexOf(name)];
+      const { buffer } = wasm().memory;
+      this.#views[name] = new Type(buffer, address, width * this.#settings.count);
+    }
+    return this.#views[name];
+  }
+
+  #copy(name) {
+    // An array that the caller has transferred to another thread has no elements.
+    if (this.#results[name]?.length) this.#results[name].set(this.#view(name));
+    else this.#results[name] = this.#view(name).slice();
+  }
+
+  #copyResults() {
+    for (const name of ["observations", "rewards", "terminated", "truncated", "ended"]) {
+      this.#copy(name);
+    }
+    if (this.#settings.autoreset === "SameStep") this.#copy("finalObservations");
+    this.#stale = false;
+  }
+
+  #observe() {
+    call(this, "observe");
+    this.#copy("observations");
+    this.#stale = false;
+  }
+
+  #checkIndex(index) {
+    if (!Number.isInteger(index) || index < 0 || index >= this.count) {
+      throw invalid(`index must be an integer from 0 to ${this.count - 1}`, index);
+    }
+  }
+
+  get count() {
+    return this.#settings.count;
+  }
+
+  get settings() {
+    return this.#settings;
+  }
+
+  get observations() {
+    if (this.#stale || !this.#results.observations.length) this.#observe();
+    return this.#results.observations;
+  }
+
+  reset(seed) {
+    return this.resetMasked(new Uint8Array(this.count).fill(1), seed);
+  }
+
+  resetMasked(mask, seed) {
+    const isFlag = (element) => [true, false, 1, 0].includes(element);
+    const flags = elements("mask", mask, this.count, isFlag, "must be true, false, 1 or 0");
+    const words = writeSeed(seed);
+    const address = addressOf(this);
+    this.#view("mask").set(flags);
+    wasm().batch_reset(address, words);
+    this.#observe();
+    return this.#results.observations;
+  }
+
+  sample(seed) {
+    call(this, "sample", writeSeed(seed));
+    return this.#view("actions").slice();
+  }
+
+  step(actions) {
+    return this.#step("actions", actions, isAction, ACTION);
+  }
+
+  stepTorque(torques) {
+    return this.#step("torques", torques, isFinite32, "must be a finite number of N m");
+  }
+
+  #step(what, given, isValid, rule) {
+    const [Type] = ARRAYS[what];
+    const { count } = this.#settings;
+    // The module checks elements of this type. `isView` is false for a proxy, which can run code.
+    const isRead = ArrayBuffer.isView(given) && given instanceof Type && given.length === count;
+    const inputs = isRead ? given : elements(what, given, count, isValid, rule);
+    const address = addressOf(this);
+    const written = this.#view(what);
+    written.set(inputs);
+    if (!wasm().batch_step(address, what === "torques")) {
+      const index = written.findIndex((each) => !isValid(each));
+      throw invalid(`${what}[${index}] ${rule}`, written[index]);
+    }
+    this.#copyResults();
+    return { ...this.#results };
+  }
+
+  stateOf(index) {
+    this.#checkIndex(index);
+    call(this, "state", index);
+    return readState();
+  }
+
+  setStateOf(index, state) {
+    this.#checkIndex(index);
+    setState(this, state, index);
+    this.#stale = true;
+  }
+
+  get states() {
+    const states = new Float32Array(4 * this.count);
+    for (let i = 0; i < this.count; i++) {
+      call(this, "state", i);
+      states.set(numbers().subarray(0, 4), 4 * i);
+    }
+    return states;
+  }
+
+  setStates(states) {
+    const rule = "must be a finite number of rad or rad/s";
+    const given = elements("states", states, 4 * this.count, isFinite32, rule);
+    for (let i = 0; i < this.count; i++) {
+      numbers().set(given.slice(4 * i, 4 * i + 4));
+      call(this, "set_state", i);
+    }
+    this.#stale = true;
+  }
+
+  elapsedStepsOf(index) {
+    this.#checkIndex(index);
+    return call(this, "elapsed_steps", index) >>> 0;
+  }
+
+  paramsOf(index) {
+    this.#checkIndex(index);
+    return readParams(this, index);
+  }
+
+  setParamsOf(index, changes) {
+    this.#checkIndex(index);
+    changeParams(this, changes, index);
+  }
+
+  snapshot() {
+    return save(this);
+  }
+
   draw(context, index, options) {
-    const signature = "draw(context, index, options)";
-    Batch.#addressFor(this, index, `${signature}: `);
-    draw(signature, context, this.stateOf(index), this.paramsOf(index), 0, options);
+    draw(context, this.stateOf(index), this.paramsOf(index), 0, options);
   }
 }

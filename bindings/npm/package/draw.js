@@ -7,25 +7,22 @@ const COLORS = {
   background: "white", target: "black", link: "#0cc", joint: "#cc0", torque: "#c00",
 };
 
-/**
- * Draws into the square from (0, 0) to (size, size) of the context's coordinates. Errors begin with
- * the signature of the method.
- */
-export function draw(signature, context, state, params, torque, options = {}) {
-  const check = (isValid, rule, value, types) => {
-    if (!isValid) throw invalid(`${signature}: ${rule}`, value, types);
-  };
-  check(typeof context?.arc === "function", "context must be a canvas's 2D context", context, []);
-  const given = checked(`${signature}: options`, options, ["size", "colors"]);
+/** Draws into the square from (0, 0) to (size, size) of the context's coordinates. */
+export function draw(context, state, params, torque, options = {}) {
+  if (typeof context?.arc !== "function") {
+    throw invalid("context must be a canvas's 2D context", context, []);
+  }
+  const given = checked("options", options, ["size", "colors"]);
   const { canvas } = context;
   const { size = Math.min(canvas?.width, canvas?.height), colors: own = {} } = given;
-  const isSize = Number.isFinite(size) && size >= 0;
-  check(isSize, "options.size must be finite and at least 0 pixels", size);
-  const names = Object.keys(COLORS);
-  const colors = { ...COLORS, ...checked(`${signature}: options.colors`, own, names) };
-  for (const name of names) {
-    const color = colors[name];
-    check(typeof color === "string", `options.colors.${name} must be a string`, color, []);
+  if (!(Number.isFinite(size) && size >= 0)) {
+    throw invalid("options.size must be finite and at least 0 pixels", size);
+  }
+  const colors = { ...COLORS, ...checked("options.colors", own, Object.keys(COLORS)) };
+  for (const [name, color] of Object.entries(colors)) {
+    if (typeof color !== "string") {
+      throw invalid(`options.colors.${name} must be a string`, color, []);
+    }
   }
   const [{ theta1, theta2 }, { length1, length2 }] = [state, params];
   const reach = length1 + length2 + 0.2;

@@ -31,41 +31,44 @@ export interface State {
   dtheta2: number;
 }
 
-/** The parameters, rounded to single precision. */
+/**
+ * The parameters, rounded to single precision. The lengths, masses, torque noise and `dynamics` of
+ * a swing-up have the defaults below, the others those of dm_control.
+ */
 export interface Params {
   /** Length of link 1, m; above 0. Default: 1. */
   length1: number;
-  /** As `length1`, of link 2. It changes only the tip's height and pictures. */
+  /** Length of link 2, which changes only the tip's height and pictures, m; above 0. Default: 1. */
   length2: number;
   /** Mass of link 1, kg; above 0. Default: 1. */
   mass1: number;
-  /** As `mass1`, of link 2. */
+  /** Mass of link 2, kg; above 0. Default: 1. */
   mass2: number;
   /** Distance of link 1's centre of mass from its joint, m; 0 or more. Default: 0.5. */
   centerOfMass1: number;
-  /** As `centerOfMass1`, of link 2. */
+  /** Distance of link 2's centre of mass from its joint, m; 0 or more. Default: 0.5. */
   centerOfMass2: number;
-  /** Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more. Default: 1. */
+  /** Inertia of link 1 about its centre of mass, kg m²; 0 or more. Default: 1. */
   inertia1: number;
-  /** As `inertia1`, of link 2. 0 is rejected if the link's centre of mass is on its joint. */
+  /** Inertia of link 2 about its centre of mass, kg m²; 0 or more. Default: 1. */
   inertia2: number;
-  /** Acceleration of gravity, m/s², downwards; finite. Default: 9.8. */
+  /** Acceleration of gravity, downwards, m/s²; finite. Default: 9.8. */
   gravity: number;
   /** Duration of a step, s; above 0. Default: 0.2. */
   dt: number;
   /** Bound of |dtheta1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default: 4π. */
   maxVelocity1: number;
-  /** As `maxVelocity1`, of dtheta2. Default: 9π. */
+  /** Bound of |dtheta2| after a step, rad/s; from 1.2e-38 to 3.4e38. Default: 9π. */
   maxVelocity2: number;
-  /** Torques of the three actions, N m, counter-clockwise; finite. Default: [-1, 0, 1]. */
+  /** Torques of the three actions, counter-clockwise, N m; finite. Default: [-1, 0, 1]. */
   torques: readonly [number, number, number];
-  /** Each step adds a uniform draw from ±torqueNoise N m; 0 or more. Default: 0. */
+  /** Bound of a uniform draw that each step adds to its torque, N m; 0 or more. Default: 0. */
   torqueNoise: number;
-  /** The equations of the book (the default) or of the NIPS paper: Gymnasium's `book_or_nips`. */
+  /** The equations of the book or of the NIPS paper: Gymnasium's `book_or_nips`. Default: "book". */
   dynamics: "book" | "nips";
-  /** Viscous friction of the fixed joint, N m s/rad; 0 or more in a swing-up, otherwise 0. */
+  /** Friction of the fixed joint in a swing-up, N m s/rad; 0 or more. Default: 0. */
   friction1: number;
-  /** As `friction1`, of the joint between the links. */
+  /** Friction of the joint between the links in a swing-up, N m s/rad; 0 or more. Default: 0. */
   friction2: number;
 }
 
@@ -148,10 +151,8 @@ export interface DrawOptions {
   colors?: Partial<Record<"background" | "target" | "link" | "joint" | "torque", string>>;
 }
 
-/** What acrobots and batches share. After `free()` each use throws an `Error`. */
+/** What acrobots and batches share. After `free()` methods throw an `Error`. */
 declare abstract class Kept {
-  /** Throws: `snapshot()` saves. Because it is an own property, `structuredClone` throws, too. */
-  readonly toJSON: () => never;
   /** The parameters: a frozen copy. */
   get params(): Readonly<Params>;
   /** Changes some parameters for the next steps, or throws if one is outside its range. */

@@ -1,21 +1,10 @@
 // What acrobots and batches share: the checks of their arguments, and what the module keeps.
 
 import {
-  Opaque, accept, checked, foreign, invalid, invalidSingle, numbers, wasm, writeSeed,
+  Opaque, camelCase, checked, integers, invalid, invalidSingle, numbers, seedWords, text, wasm,
 } from "./wasm.js";
 
 const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
-const TORQUES = ["torques[0]", "torques[1]", "torques[2]"];
-/** The numbers among the parameters, in the order of the module. */
-const SLOTS = [
-  "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2",
-  "gravity", "dt", "maxVelocity1", "maxVelocity2", ...TORQUES, "torqueNoise", "friction1",
-  "friction2",
-];
-const DYNAMICS_SLOT = SLOTS.length;
-/** What may be drawn. */
-const DRAWN = [...new Set(SLOTS.map((name) => name.replace(/\[.*/, "")))];
-const NAMES = [...DRAWN, "dynamics"];
 const DYNAMICS = ["book", "nips"];
 /** The kinds of draws in the order of the module, with the count of their numbers. */
 const DRAWS = { fixed: 0, asBefore: 0, uniform: 2, logUniform: 2, normal: 4 };
@@ -28,6 +17,10 @@ const isNumber = (value) => typeof value === "number";
 
 export const isFinite32 = (number) => isNumber(number) && Number.isFinite(Math.fround(number));
 
+function checkNumber(name, value) {
+  if (!isNumber(value)) throw invalid(`${name} must be a number`, value);
+}
+
 /** The index of a name, as the module has it. */
 export function indexOf(what, names, name) {
   const index = names.indexOf(name);
@@ -35,90 +28,47 @@ export function indexOf(what, names, name) {
   return index;
 }
 
-export const readState = () =>
-  Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
-
-function checkNumber(name, value) {
-  if (!isNumber(value)) throw invalid(`${name} must be a number`, value);
-}
-
-/** The numbers of a state by their names. Reading them can run code of the caller. */
-export function readGivenState(state) {
-  const given = checked("state", state, STATE);
-  for (const name of STATE) checkNumber(name, given[name]);
-  return given;
-}
-
-/** Sets the state of an acrobot, of a batch that with this index. */
-export function setState(kind, address, given, index) {
-  numbers().set(STATE.map((name) => given[name]));
-  accept(wasm()[`${kind}_set_state`](address, index), given);
-}
-
-/**
- * The elements of an array, each read once, because that can run code of the caller. They are not
- * converted: 258 and "2" are not 2.
- */
+/** A copy of an array whose elements are valid. They are not converted: 258 and "2" are not 2. */
 export function elements(what, array, count, isValid, rule) {
   const length = array?.length;
-  if (length !== count) {
-    const types = length === undefined ? [] : ["number"];
-    const must = length === undefined ? "be an array of" : "have";
-    throw invalid(`${what} must ${must} ${count} elements`, length ?? array, types);
+  if (length === undefined) {
+    throw invalid(`${what} must be an array of ${count} elements`, array, []);
   }
-  const copy = [];
-  for (let i = 0; i < count; i++) {
-    const element = array[i];
-    if (!isValid(element)) {
-      const must = typeof rule === "function" ? rule(i) : rule;
-      throw invalidSingle(`${what}[${i}] ${must}`, element);
-    }
-    copy.push(element);
-  }
+  if (length !== count) throw invalid(`${what} must have ${count} elements`, length);
+  const copy = Array.from({ length: count }, (_, i) => array[i]);
+  const wrong = copy.findIndex((element) => !isValid(element));
+  if (wrong >= 0) throw invalidSingle(`${what}[${wrong}] ${rule}`, copy[wrong]);
   return copy;
 }
 
-/** The parameters of acrobot `index`. A single one ignores the index. */
-export function readParams(kind, address, index) {
-  wasm()[`${kind}_params`](address, index);
-  const values = [...numbers().subarray(0, DYNAMICS_SLOT + 1)];
-  const next = (name) => {
-    if (name === "dynamics") return DYNAMICS[values[0]];
-    return name === "torques" ? Object.freeze(values.splice(0, 3)) : values.shift();
-  };
-  return Object.freeze(Object.fromEntries(NAMES.map((name) => [name, next(name)])));
+/** Writes a seed into the module's words, if there is one. Returns the number of its words. */
+export function writeSeed(seed) {
+  if (seed === undefined) return 0;
+  const words = seedWords(seed);
+  integers().set(words);
+  return words.length;
 }
 
-/** Properties of an object by their names in `SLOTS`: of `torques`, each element. */
-function readSlots(what, object, names) {
-  const given = checked(what, object, names);
-  if ("torques" in given) {
-    const torques = elements("torques", given.torques, 3, () => true);
-    delete given.torques;
-    TORQUES.forEach((name, i) => (given[name] = torques[i]));
+let slots;
+
+/** The names of the parameters in the order of the module: its numbers, and the dynamics. */
+function parameters() {
+  if (!slots) {
+    wasm().param_names();
+    const numbers = Array.from({ length: 18 }, (_, i) => camelCase(text(2 * i)));
+    slots = [...numbers, "dynamics"];
   }
-  return given;
+  return slots;
 }
 
-/** Changed parameters. Reading them can run code of the caller. */
-export function readChanges(changes) {
-  const given = readSlots("params", changes, NAMES);
-  for (const [name, value] of Object.entries(given)) {
-    if (name === "dynamics") given[name] = indexOf(name, DYNAMICS, value);
-    else checkNumber(name, value);
-  }
-  return given;
-}
-
-/** Changes what `readChanges` returns in the parameters of all acrobots, or of acrobot `index`. */
-export function writeParams(kind, address, given, index) {
-  let mask = 0;
-  for (const [name, value] of Object.entries(given)) {
-    const slot = name === "dynamics" ? DYNAMICS_SLOT : SLOTS.indexOf(name);
-    numbers()[slot] = value;
-    mask |= 1 << slot;
-  }
-  accept(wasm()[`${kind}_set_params`](address, mask, index !== undefined, index), given);
+/** The properties of an object by their names in `parameters`: of `torques`, each element. */
+function readSlots(what, object, slots) {
+  const names = [...new Set(slots.map((name) => name.replace(/\[.*/, "")))];
+  const entries = Object.entries(checked(what, object, names)).flatMap(([name, value]) => {
+    if (name !== "torques") return [[name, value]];
+    return elements(name, value, 3, () => true).map((each, i) => [`${name}[${i}]`, each]);
+  });
+  return Object.fromEntries(entries);
 }
 
 /** A draw as the module reads it: the index of its kind, and its numbers. */
@@ -134,74 +84,74 @@ function readDraw(name, draw) {
   return [index, ...elements(name, array, DRAWS[kind], isNumber, "must be a number")];
 }
 
+/**
+ * Throws if the module has rejected numbers. `given` has those of the caller by their names, as
+ * numbers or in arrays.
+ */
+function accept(kind, given) {
+  if (kind === 0) return;
+  const shared = "ownParams must be true for parameters of each acrobot";
+  if (kind === 3) throw invalid(shared, false, ["boolean"]);
+  const [value] = numbers();
+  const name = camelCase(text(1));
+  const friction = '0 unless the task is "swingup", in N m s/rad';
+  const rule = kind === 2 ? friction : `${text(3)} ${text(5)}`;
+  // What the caller gave, before it was rounded.
+  const own = [given[name]].flat().find((number) => Object.is(Math.fround(number), value));
+  throw invalidSingle(`${name} must be ${rule}`, own ?? value);
+}
+
 /** Frees what the program has forgotten to free, if the engine says when. */
 const free = ({ kind, address }) => wasm()[`${kind}_free`](address);
 const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(free);
 
 /**
- * `keep` gives an acrobot or a batch the memory at an address, and `addressOf` returns the address.
- * No caller of the package reaches them, so the module gets only addresses of its own, and none
- * that it has freed. Each use begins with `addressOf`, whose errors come before others.
+ * `addressOf` returns an address in the module, and `call` calls a function of the module with it.
+ * Reading arguments can run code that frees the acrobot, so they come after all arguments.
  */
-export let keep, addressOf, seedSample;
-let own;
+export let addressOf, call;
 
 /** What the module keeps at an address: an acrobot or a batch. */
 export class Kept extends Opaque {
   #kind;
-  #address = 0;
-  /** Whether random actions have a seed. */
-  #samples = false;
+  #address;
 
   static {
-    keep = (kept, kind, address, count) => {
-      const rule = "acrobots must fit into WebAssembly's memory of at most 4 GiB";
-      if (address === 0) throw new RangeError(`${rule}, got ${count} more`);
-      kept.#kind = kind;
-      kept.#address = address;
-      registry?.register(kept, { kind, address }, kept);
-    };
-    own = (kept, kind) => {
-      if (#kind in Object(kept) && (!kind || kind === kept.#kind)) return kept;
-      const classes = { acrobot: "Acrobot", batch: "Batch" };
-      throw foreign(classes[kind] ?? "Acrobot and Batch", kept);
-    };
-    addressOf = (kept, kind) => {
-      if (own(kept, kind).#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
+    addressOf = (kept) => {
+      if (kept.#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
       return kept.#address;
     };
-    // Returns the number of words of the seed, which is random the first time.
-    seedSample = (kept, seed) => {
-      if (seed === undefined && kept.#samples) return 0;
-      const words = writeSeed(seed);
-      kept.#samples = true;
-      return words;
-    };
+    call = (kept, name, ...given) => wasm()[`${kept.#kind}_${name}`](addressOf(kept), ...given);
+  }
+
+  constructor(kind, address, count) {
+    super();
+    const rule = "acrobots must fit into WebAssembly's memory of at most 4 GiB";
+    if (address === 0) throw new RangeError(`${rule}, got ${count} more`);
+    this.#kind = kind;
+    this.#address = address;
+    registry?.register(this, { kind, address }, this);
   }
 
   get params() {
-    const address = addressOf(this);
-    return readParams(this.#kind, address, 0);
+    return readParams(this, 0);
   }
 
   setParams(changes) {
-    addressOf(this);
-    const given = readChanges(changes);
-    writeParams(this.#kind, addressOf(this), given);
+    changeParams(this, changes);
   }
 
   setDraws(draws) {
-    addressOf(this);
-    const given = readSlots("draws", draws, DRAWN);
+    const names = parameters().slice(0, -1);
+    const given = readSlots("draws", draws, names);
     for (const [name, draw] of Object.entries(given)) given[name] = readDraw(name, draw);
-    const address = addressOf(this);
     numbers().fill(0);
-    for (const [name, row] of Object.entries(given)) numbers().set(row, 5 * SLOTS.indexOf(name));
-    accept(wasm()[`${this.#kind}_set_draws`](address), given);
+    for (const [name, row] of Object.entries(given)) numbers().set(row, 5 * names.indexOf(name));
+    accept(call(this, "set_draws"), given);
   }
 
   free() {
-    if (own(this).#address === 0) return;
+    if (this.#address === 0) return;
     registry?.unregister(this);
     free({ kind: this.#kind, address: this.#address });
     this.#address = 0;
@@ -211,23 +161,56 @@ export class Kept extends Opaque {
   [Symbol.dispose ?? Symbol("dispose")]() {
     this.free();
   }
-
-  /** What Node.js's console shows. */
-  [Symbol.for("nodejs.util.inspect.custom")](depth, options, inspect) {
-    const { name } = this.constructor;
-    if (!(#address in this)) return `${name} proxy or copy`;
-    if (this.#address === 0) return `${name} freed`;
-    const { state, elapsedSteps, maxSteps, params, settings } = this; // an acrobot has no settings
-    return `${name} ${inspect(settings ?? { state, elapsedSteps, maxSteps, params }, options)}`;
-  }
 }
 
 /** Calls a function, and frees what is being made if that throws. */
-export function orFree(kept, call) {
+export function orFree(kept, make) {
   try {
-    call();
+    make();
   } catch (error) {
     kept.free();
     throw error;
   }
+}
+
+/** The state in the module's words. */
+export const readState = () =>
+  Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
+
+/** Sets the state of a single acrobot, or of acrobot `index` of a batch. */
+export function setState(kept, state, index) {
+  const given = checked("state", state, STATE);
+  for (const name of STATE) checkNumber(name, given[name]);
+  numbers().set(STATE.map((name) => given[name]));
+  accept(call(kept, "set_state", index), given);
+}
+
+/** The parameters of acrobot `index`. A single one ignores the index. */
+export function readParams(kept, index) {
+  const names = parameters();
+  call(kept, "params", index);
+  const params = {};
+  names.forEach((name, i) => {
+    if (name.startsWith("torques")) (params.torques ??= []).push(numbers()[i]);
+    else params[name] = numbers()[i];
+  });
+  Object.freeze(params.torques);
+  return Object.freeze({ ...params, dynamics: DYNAMICS[params.dynamics] });
+}
+
+/** Changes the parameters of all acrobots, or of acrobot `index`. */
+export function changeParams(kept, changes, index) {
+  const names = parameters();
+  const given = readSlots("params", changes, names);
+  for (const [name, value] of Object.entries(given)) {
+    if (name === "dynamics") given[name] = indexOf(name, DYNAMICS, value);
+    else checkNumber(name, value);
+  }
+  let mask = 0;
+  for (const [name, value] of Object.entries(given)) {
+    const slot = names.indexOf(name);
+    numbers()[slot] = value;
+    mask |= 1 << slot;
+  }
+  accept(call(kept, "set_params", mask, index !== undefined, index), given);
 }

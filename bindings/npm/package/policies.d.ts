@@ -35,8 +35,6 @@ export class Learner {
   save(): Uint8Array;
   /** Loads weights, or throws an error with the reason for which they are rejected. */
   load(weights: Uint8Array): void;
-  /** Throws: `save()` saves. Because it is an own property, `structuredClone` throws, too. */
-  readonly toJSON: () => never;
 }
 
 /** A perceptron from Python's `acrobot_rs.policy.save`, bit-identical to a microcontroller's. */
@@ -48,8 +46,6 @@ export class Perceptron {
    * because sums overflow, it is 1, no torque.
    */
   act(acrobot: { readonly observation: ArrayLike<number> }): Action;
-  /** As `Learner.toJSON`: keep the file. */
-  readonly toJSON: () => never;
 }
 
 /** As in `acrobot-rs`, for this file's module. */

@@ -1,14 +1,13 @@
 // Policies, and a learner in a separate module. policies.d.ts describes the interface.
 
 import {
-  Opaque, checked, copied, decoded, foreign, instantiate, invalid, invalidSingle, positive,
-  seedWords,
+  Opaque, checked, copied, decoded, instantiate, invalidSingle, positive, randomSeed, seedWords,
 } from "./wasm.js";
 
 export { moduleBytes, setModule } from "./wasm.js";
 
 /** Numbers of an object, finite in single precision. `what` names the object in an error. */
-const finite = (what, object, ...names) =>
+const finite = (what, object, names) =>
   names.map((name) => {
     const number = object?.[name];
     const valid = typeof number === "number" && Number.isFinite(Math.fround(number));
@@ -17,19 +16,19 @@ const finite = (what, object, ...names) =>
   });
 
 export function bangBang(acrobot) {
-  const [dtheta1] = finite("bangBang(acrobot): acrobot.state", acrobot?.state, "dtheta1");
+  const [dtheta1] = finite("acrobot.state", acrobot?.state, ["dtheta1"]);
   return dtheta1 > 0 ? 0 : 2;
 }
 
 export function uprightEnergy(params) {
   const names = ["gravity", "mass1", "mass2", "length1", "centerOfMass1", "centerOfMass2"];
-  const [g, m1, m2, l1, lc1, lc2] = finite("uprightEnergy(params): params", params, ...names);
+  const [g, m1, m2, l1, lc1, lc2] = finite("params", params, names);
   return g * (m1 * lc1 + m2 * (l1 + lc2));
 }
 
 export function energyLaw(acrobot) {
-  const [energy] = finite("energyLaw(acrobot): acrobot", acrobot, "energy");
-  const [dtheta1] = finite("energyLaw(acrobot): acrobot.state", acrobot.state, "dtheta1");
+  const [energy] = finite("acrobot", acrobot, ["energy"]);
+  const [dtheta1] = finite("acrobot.state", acrobot.state, ["dtheta1"]);
   const torque = (energy - uprightEnergy(acrobot.params)) * dtheta1;
   return 1 + Math.max(-1, Math.min(1, Math.round(torque)));
 }
@@ -46,14 +45,14 @@ class Instance {
     return new Uint8Array(this.exports.memory.buffer, this.exports.buffer(), length);
   }
 
-  /** Calls one of the module's two functions that load, with a file in the buffer. */
-  load(what, file, call) {
+  /** Calls `load` or `load_perceptron` with a file in the buffer. */
+  load(what, file, name) {
     const copy = copied(what, file);
     const { length } = copy;
     const rule = `${what} must have at most ${BUFFER} bytes`;
     if (length > BUFFER) throw new RangeError(`${rule}, got ${length}`);
     this.bytes(length).set(copy);
-    const reason = call(length);
+    const reason = this.exports[name](length);
     if (reason !== 0) throw new RangeError(decoded(this.bytes(reason)));
   }
 }
@@ -63,7 +62,8 @@ export class Learner extends Opaque {
 
   constructor(options = {}) {
     super();
-    const { episodes = 2000, seed } = checked("options", options, ["episodes", "seed"]);
+    const given = checked("options", options, ["episodes", "seed"]);
+    const { episodes = 2000, seed = randomSeed() } = given;
     positive("episodes", episodes);
     const words = seedWords(seed);
     this.#module = new Instance();
@@ -71,36 +71,21 @@ export class Learner extends Opaque {
     this.#module.exports.begin(episodes, words.length);
   }
 
-  static get name() {
-    return "Learner";
-  }
-
-  static #moduleOf(learner) {
-    if (!(#module in Object(learner))) throw foreign("Learner", learner);
-    return learner.#module;
-  }
-
-  train(...others) {
-    const module = Learner.#moduleOf(this);
-    if (others.length > 0) throw invalid("train() must have no arguments", others[0], []);
-    return module.exports.train();
+  train() {
+    return this.#module.exports.train();
   }
 
   act(acrobot) {
-    const module = Learner.#moduleOf(this);
     const names = ["theta1", "theta2", "dtheta1", "dtheta2"];
-    const state = finite("act(acrobot): acrobot.state", acrobot?.state, ...names);
-    return module.exports.act(...state);
+    return this.#module.exports.act(...finite("acrobot.state", acrobot?.state, names));
   }
 
   save() {
-    const module = Learner.#moduleOf(this);
-    return module.bytes(module.exports.save()).slice();
+    return this.#module.bytes(this.#module.exports.save()).slice();
   }
 
   load(weights) {
-    const module = Learner.#moduleOf(this);
-    module.load("weights", weights, module.exports.load);
+    this.#module.load("weights", weights, "load");
   }
 }
 
@@ -109,17 +94,11 @@ export class Perceptron extends Opaque {
 
   constructor(file) {
     super();
-    this.#module.load("the policy", file, this.#module.exports.load_perceptron);
-  }
-
-  static get name() {
-    return "Perceptron";
+    this.#module.load("the policy", file, "load_perceptron");
   }
 
   act(acrobot) {
-    if (!(#module in Object(this))) throw foreign("Perceptron", this);
-    const given = acrobot?.observation;
-    const observation = finite("act(acrobot): acrobot.observation", given, 0, 1, 2, 3, 4, 5);
-    return this.#module.exports.act_perceptron(...observation);
+    const numbers = finite("acrobot.observation", acrobot?.observation, [0, 1, 2, 3, 4, 5]);
+    return this.#module.exports.act_perceptron(...numbers);
   }
 }

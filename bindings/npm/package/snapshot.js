@@ -1,13 +1,14 @@
 // Saves and loads snapshots, which the module reads and writes.
 
-import { bytes, copied, integers, text, wasm } from "./wasm.js";
+import { call } from "./kept.js";
+import { bytes, integers, text, wasm } from "./wasm.js";
 
-const noMemory = (length) =>
-  new RangeError(`a snapshot must fit into WebAssembly's memory of 4 GiB, got ${length} bytes`);
+const noMemory = () =>
+  new RangeError("WebAssembly's memory of at most 4 GiB has no room for the snapshot");
 
-export function save(kind, address) {
-  const length = wasm()[`${kind}_save`](address);
-  if (length === 0) throw noMemory("too many");
+export function save(kept) {
+  const length = call(kept, "save");
+  if (length === 0) throw noMemory();
   const [at, allocated] = integers();
   const snapshot = bytes(at, length).slice();
   wasm().snapshot_free(at, allocated);
@@ -15,13 +16,13 @@ export function save(kind, address) {
 }
 
 /** Calls a function with the address and the length of a copy in the module's memory. */
-function lent(snapshot, call) {
+function lent(snapshot, use) {
   const { length } = snapshot;
   const at = wasm().snapshot_new(length) >>> 0;
-  if (at === 0) throw noMemory(length);
+  if (at === 0) throw noMemory();
   bytes(at, length).set(snapshot);
   try {
-    return call(at, length);
+    return use(at, length);
   } finally {
     wasm().snapshot_free(at, length);
   }
@@ -38,10 +39,10 @@ const described = (snapshot) =>
     return `"${text(2)}", version ${version}, ${names}`;
   });
 
-/** Loads a copy of a snapshot, of the same task or of any, or throws. */
-export function load(kind, address, snapshot, anyTask) {
-  if (lent(snapshot, (...given) => wasm()[`${kind}_load`](address, ...given, anyTask))) return;
-  const [own, got] = [save(kind, address), snapshot].map(described);
+/** Loads a snapshot, of the same task or of any, or throws. */
+export function load(kept, snapshot, anyTask) {
+  if (lent(snapshot, (...given) => call(kept, "load", ...given, anyTask))) return;
+  const [own, got] = [save(kept), snapshot].map(described);
   const found = got === own ? "one with invalid contents" : got;
   throw new RangeError(`the snapshot must be a valid one of ${own}, got ${found}`);
 }

@@ -70,99 +70,64 @@ export function decoded(utf8) {
   return decodeURIComponent(codes.join(""));
 }
 
-const TypedArray = Object.getPrototypeOf(Uint8Array.prototype);
-const { get } = Object.getOwnPropertyDescriptor(TypedArray, Symbol.toStringTag);
-/** The type's name of a typed array of any realm, or undefined for other values and proxies. */
-export const typeOf = (value) => get.call(value);
+/** JavaScript's name of a parameter. */
+export const camelCase = (name) =>
+  name.replace(".joint", "").replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 
-/** The error where a method's `this` has no private fields. */
-export const foreign = (classes, value) => {
-  const rule = "must be called on the object itself, not on a proxy or a copy";
-  return invalid(`methods of ${classes} ${rule}`, value, []);
-};
+const tagOf = (value) => Object.prototype.toString.call(value);
 
-function toJSON() {
-  const by = this.snapshot ? "snapshot()" : this.save ? "save()" : "the file it was made of";
-  const { name } = this.constructor;
-  throw new TypeError(`${name} must be saved by ${by}, not by JSON or structuredClone`);
-}
-
-/** An object whose data are in private fields. Copies and proxies have none of them. */
+/** An object with its data in private fields. Vue makes no proxies of it, which have none. */
 export class Opaque {
-  /** An own property, because `structuredClone` ignores methods, and rejects functions. */
-  toJSON = toJSON;
-
-  /** For error messages. Vue makes proxies only of what is called Object, as without this. */
   get [Symbol.toStringTag]() {
     return this.constructor.name;
   }
 }
 
-/** A copy of a Uint8Array: other threads may write shared memory, and a proxy can run code. */
+/** A copy of a Uint8Array of any realm, which may be in memory that another thread writes. */
 export function copied(what, given) {
-  const valid = typeOf(given) === "Uint8Array" || given instanceof Uint8Array;
-  if (!valid) throw invalid(`${what} must be a Uint8Array`, given, []);
-  const copy = new Uint8Array(given.length);
-  for (let i = 0; i < copy.length; i++) copy[i] = given[i];
-  return copy;
+  if (given?.[Symbol.toStringTag] !== "Uint8Array") {
+    throw invalid(`${what} must be a Uint8Array`, given, []);
+  }
+  return new Uint8Array(given);
 }
-
-const tagOf = (value) => Object.prototype.toString.call(value);
 
 /** A value in an error message. */
 function shown(value) {
-  if (typeof value === "function") return "a function";
+  if (typeof value === "string") return JSON.stringify(value);
   if (typeof value === "bigint") return `${value}n`;
+  if (typeof value === "function") return "a function";
   if (Object.is(value, -0)) return "-0";
-  if (typeof value !== "string" && Object(value) !== value) return String(value);
-  const tag = tagOf(value);
-  // JSON has neither NaN and infinity, nor -0 and undefined.
-  const isMarked = (each) => typeof each === "number" || each === undefined;
-  const marked = (_, each) => (isMarked(each) ? `\0${shown(each)}\0` : each);
-  try {
-    const json = () => JSON.stringify(value, marked).replace(/"\\u0000(.*?)\\u0000"/g, "$1");
-    const text = / (Object|Array|String)]/.test(tag) ? json() : tag;
-    return text.replace(/^(.{80}).+/su, "$1…"); // whole characters, whatever their length
-  } catch {
-    return tag; // a cycle, a BigInt
-  }
+  return Object(value) === value ? tagOf(value) : String(value);
 }
 
 /** The error for a value outside its range, which has one of these types, or of another type. */
-export function invalid(rule, value, types = ["number"], note = "") {
+export function invalid(rule, value, types = ["number"]) {
   const Type = types.includes(typeof value) ? RangeError : TypeError;
-  return new Type(`${rule}, got ${shown(value)}${note}`);
+  return new Type(`${rule}, got ${shown(value)}`);
 }
 
-/** The error for a number whose single precision is outside its range, or for another value. */
+/** As `invalid`, for a number that the module keeps in single precision. */
 export function invalidSingle(rule, value) {
-  const single = typeof value === "number" ? Math.fround(value) : value;
-  const lost = Number.isFinite(value) && value !== 0 && (single === 0 || !Number.isFinite(single));
-  return invalid(rule, value, ["number"], lost ? `, which is ${single} in single precision` : "");
+  const error = invalid(rule, value);
+  if (Number.isFinite(value) && value !== 0) {
+    const single = Math.fround(value);
+    const isLost = single === 0 || !Number.isFinite(single);
+    if (isLost) error.message += `, which is ${single} in single precision`;
+  }
+  return error;
 }
 
-/** Whether an object is of no class, in any realm. */
-function isPlain(object) {
-  const prototype = Object.getPrototypeOf(object);
-  return prototype === null || Object.getPrototypeOf(prototype) === null;
-}
-
-/**
- * A copy of an object with no properties but `names`. Each is read once, because that can run code
- * of the caller, which may change the module's memory.
- */
+/** A copy of a plain object that has no properties but `names`. */
 export function checked(what, given, names) {
-  const isObject = / (Object|Module)]/.test(tagOf(given));
-  const found = isObject ? names.filter((name) => name in given) : [];
-  // An object of a class may have the names. Without them it is not meant as `{}`.
-  if (found.length === 0 && !(isObject && isPlain(given))) {
+  if (tagOf(given) !== "[object Object]") {
     throw invalid(`${what} must be a plain object`, given, []);
   }
-  const unknown = Object.keys(given).find((name) => !names.includes(name));
+  const copy = { ...given };
+  const unknown = Object.keys(copy).find((name) => !names.includes(name));
   if (unknown !== undefined) {
     throw new TypeError(`${what} must be among ${names.join(", ")}, got ${unknown}`);
   }
-  return Object.fromEntries(found.map((name) => [name, given[name]]));
+  return copy;
 }
 
 /** An integer from 1 to 2³² − 1. */
@@ -173,8 +138,10 @@ export function positive(name, value) {
   return value;
 }
 
-/** The 32-bit words of a seed, the lowest first. Without a seed takes a random one. */
-export function seedWords(seed = Math.floor(Math.random() * 2 ** 53)) {
+export const randomSeed = () => Math.floor(Math.random() * 2 ** 53);
+
+/** The 32-bit words of a seed, the lowest first. */
+export function seedWords(seed) {
   const isSeed = Number.isSafeInteger(seed) || (typeof seed === "bigint" && seed < 1n << 2048n);
   if (!isSeed || seed < 0) {
     const rule = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
@@ -187,29 +154,4 @@ export function seedWords(seed = Math.floor(Math.random() * 2 ** 53)) {
     rest >>= 32n;
   } while (rest > 0n);
   return words;
-}
-
-/** Writes a seed into the module's words. Returns their number. */
-export function writeSeed(seed) {
-  const words = seedWords(seed);
-  integers().set(words);
-  return words.length;
-}
-
-/**
- * Throws if the module has rejected numbers. `given` has those of the caller by their names, as
- * numbers or in arrays.
- */
-export function accept(kind, given = {}) {
-  if (kind === 0) return;
-  const shared = "ownParams must be true for parameters of each acrobot";
-  if (kind === 3) throw invalid(shared, false, ["boolean"]);
-  const [value] = numbers();
-  const camel = (_, letter) => letter.toUpperCase();
-  const name = text(1).replace(".joint", "").replace(/_(\w)/g, camel);
-  const friction = '0 unless the task is "swingup", in N m s/rad';
-  const rule = kind === 2 ? friction : `${text(3)} ${text(5)}`;
-  // That which the caller gave, before it was rounded.
-  const own = [given[name]].flat().find((number) => Object.is(Math.fround(number), value));
-  throw invalidSingle(`${name} must be ${rule}`, own ?? value);
 }

@@ -1,5 +1,6 @@
 //! Many acrobots at once: the class `Batch` of the package.
 
+use std::mem;
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Damped};
@@ -28,7 +29,6 @@ type AnyTask = Tasks<Acrobots<Fast, Gymnasium>, Acrobots<Damped<Fast>, Swingup>>
 /// A batch with its memory, and what JavaScript reads and writes.
 pub struct Many {
     batch: AnyTask,
-    own_params: bool,
     /// Draws random actions.
     action_space: Pcg64,
     /// JavaScript writes here before a step.
@@ -36,8 +36,6 @@ pub struct Many {
     torques: Vec<f32>,
     /// The torques of the actions of each acrobot, or of all.
     torques_of: Vec<[f32; 3]>,
-    /// Whether resets draw them.
-    draws_torques: bool,
     /// JavaScript writes here before a reset.
     mask: Vec<bool>,
     observations: Vec<[f32; 6]>,
@@ -67,12 +65,10 @@ impl Many {
         unsafe {
             Some(Self {
                 batch,
-                own_params,
                 action_space: Pcg64::UNSEEDED,
                 actions: zeros(count)?,
                 torques: zeros(count)?,
                 torques_of: zeros(if own_params { count } else { 1 })?,
-                draws_torques: false,
                 mask: zeros(count)?,
                 observations: zeros(count)?,
                 rewards: zeros(count)?,
@@ -112,22 +108,24 @@ pub extern "C" fn batch_free(many: Box<Many>) {
     drop(many);
 }
 
-/// Writes the settings, and the addresses of what JavaScript reads and writes.
+/// Writes the settings.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_open(many: &Many) {
-    let (max_steps, autoreset) =
-        with_task!(&many.batch, batch => (batch.max_steps(), batch.autoreset()));
-    let settings = [
-        many.actions.len() as u32,
-        max_steps.get(),
-        match autoreset {
-            Autoreset::SameStep => 1,
-            Autoreset::Disabled => 2,
-            _ => 0,
-        },
-        many.own_params.into(),
-        many.batch.number(),
-    ];
+pub extern "C" fn batch_settings(many: &Many) {
+    let (max_steps, autoreset, own_params) = with_task!(&many.batch, batch => {
+        (batch.max_steps(), batch.autoreset(), batch.has_own_params())
+    });
+    let autoreset = match autoreset {
+        Autoreset::SameStep => 1,
+        Autoreset::Disabled => 2,
+        _ => 0,
+    };
+    let count = many.actions.len() as u32;
+    memory::set(&[count, max_steps.get(), autoreset, own_params.into(), many.batch.number()]);
+}
+
+/// Writes the addresses of what JavaScript reads and writes.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_arrays(many: &Many) {
     let addresses = [
         many.observations.as_ptr().addr(),
         many.rewards.as_ptr().addr(),
@@ -139,23 +137,20 @@ pub extern "C" fn batch_open(many: &Many) {
         many.mask.as_ptr().addr(),
         many.torques.as_ptr().addr(),
     ];
-    memory::set(settings.into_iter().chain(addresses.map(|address| address as u32)));
+    memory::set(&addresses.map(|address| address as u32));
 }
 
-/// Resets all acrobots, or those in the mask.
+/// Resets the acrobots in the mask.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_reset(many: &mut Many, words: usize, masked: bool) {
+pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
-    if !masked {
-        many.mask.fill(true);
-    }
     let options = ResetOptions { seed, bounds: None };
     // Here and below the lengths are equal, so that this cannot fail.
     let _ = with_task!(&mut many.batch, batch => batch.reset_masked(&many.mask, options));
     for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
         *ended &= !reset;
     }
-    many.note_torques(false);
+    many.note_drawn_torques();
 }
 
 #[unsafe(no_mangle)]
@@ -175,20 +170,6 @@ pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
 }
 
 impl Many {
-    /// Notes the torques of the actions: of all acrobots, or of those that a reset has drawn.
-    fn note_torques(&mut self, all: bool) {
-        if !all && !self.draws_torques {
-            return;
-        }
-        with_task!(&self.batch, batch => {
-            for (index, torques) in self.torques_of.iter_mut().enumerate() {
-                if all || batch.elapsed_steps_of(index) == Some(0) {
-                    *torques = batch.params_of(index).map_or(*torques, |params| params.torques);
-                }
-            }
-        });
-    }
-
     /// Makes torques of the actions: steps of actions, too, would take 17 KB. Returns false if an
     /// action is above 2.
     fn act(&mut self) -> bool {
@@ -197,52 +178,67 @@ impl Many {
         }
         let torques = self.torques.iter_mut().zip(&self.actions);
         match *self.torques_of {
-            // No branch, so that the compiler vectorizes the loop.
-            [[negative, zero, positive]] => torques.for_each(|(torque, action)| {
-                *torque = match action {
-                    0 => negative,
-                    1 => zero,
-                    _ => positive,
-                };
-            }),
+            [shared] => torques.for_each(|(torque, action)| *torque = torque_of(shared, *action)),
             ref each => torques.zip(each).for_each(|((torque, action), of)| {
-                *torque = of.get(usize::from(*action)).copied().unwrap_or_default();
+                *torque = torque_of(*of, *action);
             }),
         }
         true
     }
 
+    /// Notes the torques of the actions after a change of parameters.
+    fn note_torques(&mut self) {
+        with_task!(&self.batch, batch => {
+            for (index, torques) in self.torques_of.iter_mut().enumerate() {
+                *torques = batch.params_of(index).map_or(*torques, |params| params.torques);
+            }
+        });
+    }
+
+    /// Notes the torques of the actions after resets, which may draw them.
+    fn note_drawn_torques(&mut self) {
+        let drawn = with_task!(&self.batch, batch => batch.draws().params().torques);
+        if !matches!(drawn, [Draw::Fixed, Draw::Fixed, Draw::Fixed]) {
+            self.note_torques();
+        }
+    }
+
     /// Changes parameters of acrobot `index`, or of all without one.
     fn set_params(&mut self, index: Option<usize>, mask: u32) -> Result<(), Error> {
         let indices = index.map_or(0..self.actions.len(), |index| index..index + 1);
-        // All are tried before one changes.
-        for is_trial in [true, false] {
-            for each in indices.clone() {
-                let params = with_task!(&self.batch, batch => batch.params_of(each));
-                let Some(before) = params else {
-                    break;
-                };
-                let params = memory::changed(before, mask);
-                with_task!(&mut self.batch, batch => {
-                    if index.is_none() && !self.own_params {
+        with_task!(&mut self.batch, batch => {
+            // All are tried before one changes.
+            for is_trial in [true, false] {
+                for each in indices.clone() {
+                    let Some(before) = batch.params_of(each) else {
+                        break;
+                    };
+                    let params = memory::changed(before, mask);
+                    if index.is_none() && !batch.has_own_params() {
                         return batch.set_params(params);
                     }
                     batch.set_params_of(each, params)?;
                     if is_trial {
                         batch.set_params_of(each, before)?;
                     }
-                });
+                }
             }
-        }
+        });
         Ok(())
     }
 
     fn set_draws(&mut self) -> Result<(), Error> {
         let draws = memory::get_draws()?;
-        with_task!(&mut self.batch, batch => batch.set_draws(draws))?;
-        self.draws_torques =
-            !matches!(draws.params().torques, [Draw::Fixed, Draw::Fixed, Draw::Fixed]);
-        Ok(())
+        with_task!(&mut self.batch, batch => batch.set_draws(draws))
+    }
+}
+
+/// Without a branch, so that the compiler vectorizes loops.
+fn torque_of([negative, zero, positive]: [f32; 3], action: u8) -> f32 {
+    match action {
+        0 => negative,
+        1 => zero,
+        _ => positive,
     }
 }
 
@@ -265,7 +261,7 @@ pub extern "C" fn batch_step(many: &mut Many, given_torques: bool) -> bool {
         for (ended, (terminated, truncated)) in many.ended.iter_mut().zip(flags) {
             *ended = (*ended & lasting) | terminated | truncated;
         }
-        many.note_torques(false);
+        many.note_drawn_torques();
     }
     stepped
 }
@@ -299,7 +295,7 @@ pub extern "C" fn batch_params(many: &Many, index: usize) {
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_params(many: &mut Many, mask: u32, of_one: bool, index: usize) -> u32 {
     let changed = many.set_params(of_one.then_some(index), mask);
-    many.note_torques(true);
+    many.note_torques();
     memory::reason(changed)
 }
 
@@ -317,12 +313,12 @@ type Fields = (State<f32>, u32, bool, Pcg64);
 
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_save(many: &Many) -> usize {
-    let (count, own) = (many.actions.len(), many.own_params);
+    let count = many.actions.len();
     let header = snapshot::header("batch", many.batch.number());
     let (settings, draws): (Settings, _) = with_task!(&many.batch, batch => {
         let (bounds, draws) = (batch.reset_bounds(), *batch.draws().params());
         let (low, high, limit) = (bounds.low(), bounds.high(), batch.max_steps());
-        ((low, high, limit, batch.autoreset(), own), draws)
+        ((low, high, limit, batch.autoreset(), batch.has_own_params()), draws)
     });
     // The settings have less than 512 bytes, each acrobot at most 151.
     snapshot::save(512 + count * 151, |writer| {
@@ -377,18 +373,17 @@ fn load(content: &[u8]) -> Option<Many> {
         batch.set_max_steps(max_steps);
         batch.set_autoreset(autoreset);
     });
-    many.draws_torques = !matches!(draws.torques, [Draw::Fixed, Draw::Fixed, Draw::Fixed]);
-    many.note_torques(true);
+    many.note_torques();
     reader.finalize().ok()?.is_empty().then_some(many)
 }
 
 /// Loads a snapshot. Returns false and changes nothing if it is invalid, or without memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_load(many: &mut Many, address: *const u8, len: usize) -> bool {
-    let loaded = snapshot::open(address, len).and_then(load);
-    let is_valid = loaded.is_some();
-    if let Some(loaded) = loaded {
-        *many = loaded;
-    }
-    is_valid
+    let Some(mut loaded) = snapshot::open(address, len).and_then(load) else {
+        return false;
+    };
+    mem::swap(&mut loaded.action_space, &mut many.action_space);
+    *many = loaded;
+    true
 }

@@ -55,17 +55,17 @@ fn numbers() -> [f32; LEN] {
     WORDS.get().map(f32::from_bits)
 }
 
-pub fn set(values: impl IntoIterator<Item = u32>) {
+pub fn set(values: &[u32]) {
     WORDS.with(|words| {
         let words: &Cell<[u32]> = words;
         for (word, value) in words.as_slice_of_cells().iter().zip(values) {
-            word.set(value);
+            word.set(*value);
         }
     });
 }
 
 pub fn set_numbers<const N: usize>(values: [f32; N]) {
-    set(values.map(f32::to_bits));
+    set(&values.map(f32::to_bits));
 }
 
 /// A text as its address and its length.
@@ -83,11 +83,21 @@ pub fn get_state() -> State<f32> {
     State::from([theta1, theta2, dtheta1, dtheta2])
 }
 
-/// Writes the numbers in the order of the fields, then that of the dynamics.
+/// Writes the names of the parameters' numbers.
+#[unsafe(no_mangle)]
+pub extern "C" fn param_names() {
+    let names = Params::<f32>::DEFAULT.numbers().map(|(name, _)| text(name));
+    set(names.as_flattened());
+}
+
+/// Writes the numbers in the order of their names, then that of the dynamics.
 pub fn set_params(params: &Params<f32>) {
     let dynamics = f32::from(u8::from(params.dynamics == Dynamics::Nips));
-    let numbers = params.numbers().into_iter().map(|(_, number)| number);
-    set(numbers.chain([dynamics]).map(f32::to_bits));
+    let mut words = [dynamics.to_bits(); 19];
+    for (word, (_, number)) in words.iter_mut().zip(params.numbers()) {
+        *word = number.to_bits();
+    }
+    set(&words);
 }
 
 /// The parameters with some replaced by what JavaScript has written as [`set_params`] does: those
@@ -134,7 +144,7 @@ pub fn reason(result: Result<(), Error>) -> u32 {
         // Of own parameters, where all acrobots share them. JavaScript lets no other occur.
         Err(_) => (3, 0.0, [""; 3]),
     };
-    let texts = texts.into_iter().flat_map(text);
-    set([(value as f32).to_bits()].into_iter().chain(texts));
+    let [[a, b], [c, d], [e, f]] = texts.map(text);
+    set(&[(value as f32).to_bits(), a, b, c, d, e, f]);
     kind
 }

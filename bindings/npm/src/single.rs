@@ -98,14 +98,16 @@ pub extern "C" fn acrobot_observe(one: &One) {
     set_numbers(with_task!(&one.acrobot, acrobot => acrobot.observation()));
 }
 
-/// Writes the state, the energy and the tip's height.
+/// Writes the state, the energy, the tip's height, the steps, their limit and the task.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_read(one: &One) {
-    with_task!(&one.acrobot, acrobot => {
+    let numbers = with_task!(&one.acrobot, acrobot => {
         let pendulum = acrobot.pendulum();
         let [a, b, c, d] = pendulum.state().into();
-        set_numbers([a, b, c, d, pendulum.energy(), pendulum.tip_height()]);
+        [a, b, c, d, pendulum.energy(), pendulum.tip_height()]
     });
+    let [a, b, c, d, e, f] = numbers.map(f32::to_bits);
+    memory::set(&[a, b, c, d, e, f, one.elapsed_steps, one.max_steps.get(), one.acrobot.number()]);
 }
 
 #[unsafe(no_mangle)]
@@ -154,21 +156,6 @@ pub extern "C" fn acrobot_set_params(one: &mut One, mask: u32) -> u32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_set_draws(one: &mut One) -> u32 {
     memory::reason(one.set_draws())
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn acrobot_task(one: &One) -> u32 {
-    one.acrobot.number()
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn acrobot_max_steps(one: &One) -> u32 {
-    one.max_steps.get()
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn acrobot_elapsed_steps(one: &One) -> u32 {
-    one.elapsed_steps
 }
 
 /// The fields of an acrobot's snapshot after its header.

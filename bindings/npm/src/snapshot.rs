@@ -124,7 +124,7 @@ pub fn save(limit: usize, write: impl FnOnce(&mut Writer<'_>) -> postcard::Resul
     {
         *to = checksum(content);
     }
-    memory::set([bytes.as_ptr().addr(), bytes.len()].map(|word| word as u32));
+    memory::set(&[bytes.as_ptr().addr(), bytes.len()].map(|word| word as u32));
     bytes.leak();
     len + 4
 }
@@ -152,8 +152,8 @@ pub extern "C" fn snapshot_header(address: *const u8, len: usize) -> u32 {
         if of != kind {
             return None;
         }
-        let texts = [of, task, arithmetic].into_iter().flat_map(text);
-        memory::set([version, friction.into()].into_iter().chain(texts));
+        let [[a, b], [c, d], [e, f]] = [of, task, arithmetic].map(text);
+        memory::set(&[version, friction.into(), a, b, c, d, e, f]);
         Some(())
     });
     found.map_or(1, |()| 2)

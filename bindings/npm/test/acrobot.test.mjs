@@ -3,7 +3,6 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { inspect } from "node:util";
 
 import { ACTIONS, bits as bitsOf, trace } from "../../../examples/web/test/native.mjs";
 import { Acrobot, Batch } from "../dist/index.js";
@@ -11,11 +10,7 @@ import { ACTION, SEED, assertRejected, changed, randoms, sealed } from "./module
 
 const bits = ({ state }) => bitsOf(Object.values(state));
 
-const PARAMS = [
-  "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2",
-  "gravity", "dt", "maxVelocity1", "maxVelocity2", "torques", "torqueNoise", "friction1",
-  "friction2", "dynamics",
-];
+const PARAMS = Object.keys(new Acrobot().params);
 
 /** An episode that is not in its initial state. */
 function busy() {
@@ -122,82 +117,47 @@ test("random actions with a seed are Gymnasium's", () => {
   assert.deepEqual(samples, [0, 2, 1, 1, 1, 2, 0, 2, 0, 0, 1, 2]);
   const batch = new Batch({ count: 6 });
   assert.deepEqual([...batch.sample(42n), ...batch.sample()], [2, 1, 2, 2, 0, 2, 2, 2, 0, 1, 1, 2]);
-  const first = () => Array.from({ length: 40 }, () => new Acrobot({ seed: 1 }).sample());
-  assert.notDeepEqual(first(), first());
+  // Without a seed they are random, also after a snapshot.
+  const alone = () => Array.from({ length: 40 }, () => new Acrobot({ seed: 1 }).sample());
+  assert.notDeepEqual(alone(), alone());
+  const snapshot = new Batch({ count: 40 }).snapshot();
+  assert.notDeepEqual(Batch.restore(snapshot).sample(), Batch.restore(snapshot).sample());
 });
 
-/** A context that records the names of the methods called, and the square that is filled. */
+/** A context that records the names of the methods called. */
 function canvas() {
-  const calls = [];
-  const target = { calls, canvas: { width: 300, height: 200 }, arc() {} };
-  const record = (name) => (...numbers) => calls.push([name, ...numbers]);
-  return new Proxy(target, { get: (target, name) => target[name] ?? record(name) });
+  const target = { calls: [], canvas: { width: 300, height: 200 }, arc() {} };
+  return new Proxy(target, {
+    get: (target, name) => target[name] ?? (() => target.calls.push(name)),
+  });
 }
-
-test("a picture fills the canvas or a square, and undefined options are the default", () => {
-  const acrobot = new Acrobot();
-  for (const [options, side] of [
-    [undefined, 200],
-    [{ size: undefined, colors: undefined }, 200],
-    [{ size: 50 }, 50],
-    [{ size: 0 }, 0],
-  ]) {
-    const context = canvas();
-    acrobot.draw(context, options);
-    const square = context.calls.find(([name]) => name === "fillRect");
-    assert.deepEqual(square, ["fillRect", 0, 0, side, side]);
-  }
-});
 
 test("invalid arguments of draw are rejected, and nothing is drawn", () => {
   const [batch, acrobot, context] = [new Batch({ count: 1 }), new Acrobot(), canvas()];
   const draw = (...given) => () => acrobot.draw(...given);
-  const sized = (size) => draw(context, { size });
-  const colored = (colors) => draw(context, { colors });
-  const ofBatch = (...given) => () => batch.draw(context, ...given);
-  const [own, batched] = ["draw(context, options): ", "draw(context, index, options): "];
   const SIZE = "options.size must be finite and at least 0 pixels";
   const NAMES = "background, target, link, joint, torque";
   assertRejected([
-    ["TypeError", `${own}context must be a canvas's 2D context`,
-      ["undefined", draw()],
-      ["null", draw(null)],
-      ['{"width":300,"height":200}', draw(context.canvas)]],
-    ["TypeError", `${own}options must be a plain object`,
-      ["null", draw(context, null)], ["[object Map]", draw(context, new Map())]],
-    ["TypeError", `${own}options must be among size, colors`, ["sise", draw(context, { sise: 1 })]],
-    ["RangeError", own + SIZE, ["-1", sized(-1)], ["NaN", sized(NaN)], ["NaN", draw({ arc() {} })]],
-    ["TypeError", own + SIZE, ['"100"', sized("100")]],
-    ["TypeError", `${own}options.colors must be a plain object`,
-      ['"red"', colored("red")], ["[object Set]", colored(new Set())]],
-    ["TypeError", `${own}options.colors must be among ${NAMES}`, ["lnik", colored({ lnik: "" })]],
-    ["TypeError", `${own}options.colors.link must be a string`, ["5", colored({ link: 5 })]],
-    ["TypeError", `${own}options.colors.torque must be a string`,
-      ["undefined", colored({ torque: undefined })]],
-    ["RangeError", batched + SIZE, ["-1", ofBatch(0, { size: -1 })]],
-    ["TypeError", `${batched}index must be an integer from 0 to 0`, ["{}", ofBatch({})]],
+    ["TypeError", "context must be a canvas's 2D context", ["undefined", draw()]],
+    ["TypeError", "options must be among size, colors", ["sise", draw(context, { sise: 1 })]],
+    ["RangeError", SIZE, ["-1", draw(context, { size: -1 })], ["NaN", draw({ arc() {} })]],
+    ["TypeError", SIZE, ['"100"', draw(context, { size: "100" })]],
+    ["TypeError", `options.colors must be among ${NAMES}`,
+      ["lnik", draw(context, { colors: { lnik: "" } })]],
+    ["TypeError", "options.colors.link must be a string",
+      ["5", draw(context, { colors: { link: 5 } })]],
+    ["TypeError", "index must be an integer from 0 to 0",
+      ["[object Object]", () => batch.draw(context, {})]],
   ]);
   assert.deepEqual(context.calls, []);
 });
 
-test("the console shows what an acrobot and a batch are", () => {
-  const [acrobot, batch] = [new Acrobot({ maxSteps: 7 }), new Batch({ count: 3 })];
-  acrobot.state = { theta1: 0.5, theta2: 0, dtheta1: 0, dtheta2: 0 };
-  const { state, elapsedSteps, maxSteps, params } = acrobot;
-  const shown = { state, elapsedSteps, maxSteps, params };
-  assert.equal(inspect(acrobot), `Acrobot ${inspect(shown)}`);
-  assert.equal(inspect(batch), `Batch ${inspect(batch.settings)}`);
-  acrobot.free();
-  assert.equal(inspect([acrobot]), "[ Acrobot freed ]");
-});
-
-const MAX_STEPS = "maxSteps must be an integer from 1 to 2^32 - 1";
-const DT = "dt must be finite and above 0 s";
 const DRAW =
   "mass1 must be drawn by [low, high], { logUniform: [low, high] }, " +
   '{ normal: [mean, std, low, high] }, "asBefore" or "fixed"';
 const SINGLE = "in single precision";
 
+// rejections.test.mjs has numbers outside the range of a parameter.
 test("invalid arguments are rejected with the value and the rule, and nothing changes", () => {
   const acrobot = busy();
   const before = acrobot.snapshot();
@@ -205,28 +165,20 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
   const reset = (seed) => () => acrobot.reset(seed);
   const set = (params) => () => acrobot.setParams(params);
   const make = (options) => () => new Acrobot(options);
-  const push = (torque) => () => acrobot.stepTorque(torque);
   const draw = (draws) => () => acrobot.setDraws(draws);
   const move = (state) => () => (acrobot.state = state);
-  const marked = [-0, NaN, undefined, [-Infinity], "NaN"]; // what JSON has not
   const rows = [
     ["RangeError", `action ${ACTION}`, ["1.5", step(1.5)]],
     ["TypeError", `action ${ACTION}`,
-      ["1n", step(1n)], ['"1"', step("1")], ["undefined", step()],
-      [`["${"x".repeat(78)}…`, step(["x".repeat(99)])],
-      ["[object Object]", step({ action: 1n })],
-      ["[object Uint8Array]", step(Uint8Array.of(1))],
-      ["Symbol(1)", step(Symbol("1"))],
-      ["a function", step(() => 1)]],
-    ["RangeError", "torque must be a finite number of N m",
-      ["1e+39, which is Infinity in single precision", push(1e39)]],
-    ["TypeError", "torque must be a finite number of N m", ['"1"', push("1")]],
+      ["1n", step(1n)], ['"1"', step("1")], ["undefined", step()], ["[object Array]", step([1])],
+      ["Symbol(1)", step(Symbol("1"))], ["a function", step(() => 1)]],
+    ["TypeError", "torque must be a finite number of N m", ['"1"', () => acrobot.stepTorque("1")]],
     ["RangeError", 'friction1 must be 0 unless the task is "swingup", in N m s/rad',
       ["0.1", set({ friction1: 0.1 })], ["0.2", draw({ friction1: [0, 0.2] })]],
     ["TypeError", "mass1[1] must be a number", ['"2"', draw({ mass1: [1, "2"] })]],
     ["TypeError", DRAW,
-      ["1", draw({ mass1: 1 })], ["{}", draw({ mass1: {} })], ["null", draw({ mass1: null })],
-      ['{"logUniform":1,"normal":0}', draw({ mass1: { logUniform: 1, normal: 0 } })]],
+      ["1", draw({ mass1: 1 })], ["null", draw({ mass1: null })],
+      ["[object Object]", draw({ mass1: { logUniform: 1, normal: 0 } })]],
     ["RangeError", "mass1 must have 2 elements",
       ["3", draw({ mass1: [1, 2, 3] })], ["0", draw({ mass1: "uniform" })]],
     ["TypeError", "mass1 must be an array of 4 elements", ["1", draw({ mass1: { normal: 1 } })]],
@@ -236,40 +188,25 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
       ['"swing-up"', make({ task: "swing-up" })]],
     ["RangeError", SEED,
       ["-1", () => acrobot.sample(-1)],
-      ["-1", reset(-1)], ["-1n", reset(-1n)], ["9007199254740992", reset(2 ** 53)],
+      ["-1n", reset(-1n)], ["9007199254740992", reset(2 ** 53)],
       [`${1n << 2048n}n`, reset(1n << 2048n)]],
     ["TypeError", SEED, ['"42"', reset("42")], ["null", reset(null)]],
-    ["RangeError", DT,
-      ["-0", set({ dt: -0 })], ["-1", make({ params: { dt: -1 } })]],
-    ["TypeError", "mass1 must be a number",
-      ["undefined", set({ mass1: undefined })], ['{"kg":NaN}', set({ mass1: { kg: NaN } })]],
+    ["TypeError", "mass1 must be a number", ["undefined", set({ mass1: undefined })]],
     ["RangeError", "gravity must be a finite number of m/s²",
       [`1e+39, which is Infinity ${SINGLE}`, set({ gravity: 1e39 })]],
     ["RangeError", "length1 must be finite and above 0 m",
-      [`1e-60, which is 0 ${SINGLE}`, set({ length1: 1e-60 })]],
+      ["-0", set({ length1: -0 })], [`1e-60, which is 0 ${SINGLE}`, set({ length1: 1e-60 })]],
     ["RangeError", "torques must have 3 elements", ["2", set({ torques: [1, 2] })]],
-    ["TypeError", "torques must be an array of 3 elements", ["1", set({ torques: 1 })]],
-    ["TypeError", "torques[2] must be a number",
-      ['[-0,NaN,undefined,[-Infinity],"NaN"]', set({ torques: [1, 2, marked] })]],
-    ["TypeError", 'dynamics must be "book" or "nips"',
-      ['"Nips"', set({ dynamics: "Nips" })],
-      [`"${"💥".repeat(79)}…`, set({ dynamics: "💥".repeat(99) })],
-      [`"x${"💥".repeat(78)}…`, set({ dynamics: `x${"💥".repeat(99)}` })]],
+    ["TypeError", "torques[2] must be a number", ["null", set({ torques: [1, 2, null] })]],
+    ["TypeError", 'dynamics must be "book" or "nips"', ['"Nips"', set({ dynamics: "Nips" })]],
     ["TypeError", `params must be among ${PARAMS.join(", ")}`, ["mass", set({ mass: 1 })]],
     ["TypeError", "params must be a plain object",
       ["undefined", set()], ["[object Map]", set(new Map([["mass1", 2]]))]],
-    ["TypeError", "draws must be a plain object",
-      ["[object Date]", draw(new Date())], ["{}", draw(new (class {})())],
-      ["[object Acrobot]", draw(acrobot)]],
-    ["TypeError", "state must be a plain object", ["[object Date]", move(new Date())]],
     ["TypeError", "theta2 must be a number", ["undefined", move({ theta1: 0 })]],
-    ["RangeError", MAX_STEPS,
-      ["0", make({ maxSteps: 0 })], ["-0", make({ maxSteps: -0 })],
-      ["4294967296", make({ maxSteps: 2 ** 32 })]],
+    ["RangeError", "maxSteps must be an integer from 1 to 2^32 - 1",
+      ["0", make({ maxSteps: 0 })], ["4294967296", make({ maxSteps: 2 ** 32 })]],
     ["TypeError", "options must be among seed, params, maxSteps, task, draws",
       ["sed", make({ sed: 1 })]],
-    ["TypeError", "options must be a plain object",
-      ["42", make(42)], ["[]", make([])], ["[object Date]", make(new Date())]],
   ];
   assertRejected(rows, (call) => assert.deepEqual(acrobot.snapshot(), before, String(call)));
 });
@@ -299,62 +236,53 @@ test("a snapshot has the bytes of Rust's postcard, then its checksum", () => {
 test("damaged snapshots, and those of others, are rejected, and nothing changes", () => {
   const acrobot = busy();
   const before = acrobot.snapshot();
-  const restores = (bytes) => {
-    try {
-      acrobot.restore(bytes);
-      return true;
-    } catch (error) {
-      assert.match(error.message, /^the snapshot must /);
-      assert.deepEqual(acrobot.snapshot(), before);
-      return false;
-    }
+  const rejects = (bytes, error) => {
+    assert.throws(() => acrobot.restore(bytes), error);
+    assert.deepEqual(acrobot.snapshot(), before);
   };
-  for (let bit = 0; bit < 8 * before.length; bit++) {
-    const damaged = before.slice();
-    damaged[bit >> 3] ^= 1 << (bit & 7);
-    assert.ok(!restores(damaged), `bit ${bit}`);
-  }
-  before.forEach((_, length) => assert.ok(!restores(before.slice(0, length))));
-  const others = [Uint8Array.of(...before, 0), new Uint8Array(1000), new Uint8Array()];
-  for (const other of [...others, [...before], before.buffer, "x", null, undefined]) {
-    assert.ok(!restores(other));
-  }
-  assert.ok(restores(before));
-
-  assert.ok(restores(changed(before, 8, 4)));
+  before.forEach((byte, i) => {
+    for (const damaged of [before.with(i, byte ^ 1), before.slice(0, i)]) {
+      rejects(damaged, /^RangeError: the snapshot must be .*, got \d+ bytes with another checksum$/);
+    }
+  });
   const fields = 'task "gymnasium", arithmetic "fast", friction false';
-  const [version3, own] = [3, 4].map((each) => `"acrobot", version ${each}, ${fields}`);
-  const rule = `the snapshot must be a valid one of ${own}`;
-  for (const [bytes, message] of [
-    [changed(before, 8, 3), `${rule}, got ${version3}`],
-    [changed(before, 20, ...Buffer.from("host")), /got "acrobot", .*, arithmetic "host", friction/],
+  const rule = `the snapshot must be a valid one of "acrobot", version 4, ${fields}`;
+  for (const [bytes, found] of [
+    [changed(before, 8, 3), `"acrobot", version 3, ${fields}`],
     // A length1 of NaN.
-    [changed(before, 25, 0, 0, 0xc0, 0x7f), `${rule}, got one with invalid contents`],
-    [new Batch({ count: 5 }).snapshot(), /got "batch", version 4, task "gymnasium", .* false$/],
-    [sealed(Buffer.from("text")), `${rule}, got 8 other bytes`],
-    [Buffer.concat([changed(before, 0, 7).subarray(0, -4), Buffer.of(0)]), /checksum/],
+    [changed(before, 25, 0, 0, 0xc0, 0x7f), "one with invalid contents"],
+    [new Batch({ count: 5 }).snapshot(), `"batch", version 4, ${fields}`],
+    [sealed(Buffer.from("text")), "8 other bytes"],
+    [Uint8Array.of(...before, 0), `${before.length + 1} bytes with another checksum`],
   ]) {
-    assert.throws(() => Acrobot.restore(bytes), { name: "RangeError", message });
-    assert.ok(!restores(bytes));
+    rejects(bytes, { name: "RangeError", message: `${rule}, got ${found}` });
   }
+  const message = "the snapshot must be a Uint8Array, got [object ArrayBuffer]";
+  rejects(before.buffer, { name: "TypeError", message });
   // Any bytes with the right checksum.
   const random = randoms();
   for (let i = 0; i < 2000; i++) {
-    if (restores(changed(before, random(before.length - 4), random(256)))) acrobot.step(2);
+    try {
+      acrobot.restore(changed(before, random(before.length - 4), random(256)));
+      acrobot.step(2);
+    } catch ({ message }) {
+      assert.match(message, /^the snapshot must be a valid one of /);
+    }
     acrobot.restore(before);
   }
 });
 
-test("after free, every use throws, and other acrobots continue", () => {
+test("after free, methods throw, and other acrobots continue", () => {
   const [acrobot, other] = [new Acrobot({ seed: 1 }), new Acrobot({ seed: 2 })];
   const before = other.snapshot();
   acrobot.free();
   acrobot.free();
-  const methods = ["reset", "step", "stepTorque", "sample", "snapshot", "draw"];
-  const reads = ["observation", "state", "params", "energy", "tipHeight", "elapsedSteps"];
+  // Its memory is used again.
+  const third = new Acrobot({ seed: 3 });
   for (const use of [
-    ...methods.map((name) => () => acrobot[name](1)),
-    ...reads.map((name) => () => acrobot[name]),
+    ...["reset", "step", "stepTorque", "sample", "draw"].map((name) => () => acrobot[name](1)),
+    ...["observation", "state", "params", "energy"].map((name) => () => acrobot[name]),
+    () => acrobot.snapshot(),
     () => acrobot.setParams({}),
     () => acrobot.setDraws({}),
     () => (acrobot.state = other.state),
@@ -362,20 +290,8 @@ test("after free, every use throws, and other acrobots continue", () => {
   ]) {
     assert.throws(use, { name: "Error", message: "the acrobot has been freed" });
   }
-  // Its memory is used again.
-  const third = new Acrobot({ seed: 3 });
-  assert.throws(() => acrobot.step(1), /freed/);
   assert.deepEqual(third.snapshot(), new Acrobot({ seed: 3 }).snapshot());
   assert.deepEqual(other.snapshot(), before);
   third[Symbol.dispose]();
   assert.throws(() => third.step(1), /freed/);
-});
-
-test("a method rejects what is no acrobot, whose address it would not have", () => {
-  const base = Object.getPrototypeOf(Acrobot);
-  const made = Reflect.construct(base, ["acrobot", 4096], Acrobot);
-  const proxy = new Proxy(new Acrobot(), {});
-  for (const wrong of [{}, new Batch({ count: 1 }), proxy, new base(), made]) {
-    assert.throws(() => Acrobot.prototype.step.call(wrong, 1), TypeError);
-  }
 });

@@ -151,31 +151,26 @@ test("draws and parameters are checked together, and a restored acrobot draws no
 
 test("acrobots of a batch can have other states", () => {
   const [batch, others] = [new Batch(OPTIONS), alone(OPTIONS)];
-  const state = { theta1: 1, theta2: -2, dtheta1: 3, dtheta2: -4 };
-  batch.step(all(0));
-  others.forEach((other) => other.step(0));
-  batch.setStateOf(5, state);
-  others[5].state = state;
-  assert.deepEqual(row(batch.observations, 5), others[5].observation);
-  assert.equal(batch.elapsedStepsOf(5), 1);
-  const { observations } = batch.step(all(2));
-  for (let i = 1; i < COUNT; i++) {
-    assert.deepEqual(row(observations, i), others[i].step(2).observation);
-  }
-  const { states } = batch;
-  assert.deepEqual([...states.slice(20, 24)], Object.values(batch.stateOf(5)));
-  states.set([0.5, -0.5, 1, -1], 4 * 7);
+  const states = Array.from(batch.states);
+  [0.5, -0.5, 1, -1].forEach((number, i) => (states[4 * 7 + i] = number));
   batch.setStates(states);
-  others[7].state = { theta1: 0.5, theta2: -0.5, dtheta1: 1, dtheta2: -1 };
-  assert.deepEqual(row(batch.observations, 7), others[7].observation);
-  assert.deepEqual(batch.states, states);
+  batch.setStateOf(5, { theta1: 1, theta2: -2, dtheta1: 3, dtheta2: -4 });
+  for (const i of [5, 7]) {
+    others[i].state = batch.stateOf(i);
+    assert.deepEqual(row(batch.observations, i), others[i].observation);
+    assert.deepEqual([...batch.states.slice(4 * i, 4 * i + 4)], Object.values(others[i].state));
+  }
+  assert.equal(others[7].state.theta2, -0.5);
+  together(batch, others)("step", all(2));
 });
 
 test("a batch's snapshot continues with the same bits", () => {
   for (const autoreset of ["NextStep", "SameStep", "Disabled"]) {
     const batch = new Batch({ ...OPTIONS, autoreset });
-    // The last step ends all episodes that have not ended before.
-    for (let steps = 0; steps < OPTIONS.maxSteps; steps++) batch.step(randomActions());
+    batch.setStateOf(1, { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 });
+    batch.step(all(1));
+    // With "Disabled" it has ended all the same.
+    batch.setStateOf(1, { theta1: 0, theta2: 0, dtheta1: 0, dtheta2: 0 });
     const resumed = Batch.restore(batch.snapshot());
     for (const name of ["settings", "observations", "params"]) {
       assert.deepEqual(resumed[name], batch[name]);
@@ -184,22 +179,10 @@ test("a batch's snapshot continues with the same bits", () => {
     for (let steps = 0; steps < 40; steps++) {
       const actions = randomActions();
       // Rows of acrobots that did not end are not in a snapshot.
-      const [results, expected] = [resumed, batch].map((each) => ({ ...each.step(actions) }));
-      delete results.finalObservations;
-      delete expected.finalObservations;
-      assert.deepEqual(results, expected);
-      assert.deepEqual(resumed.elapsedStepsOf(9), batch.elapsedStepsOf(9));
+      const [results, expected] = [resumed, batch].map((each) => each.step(actions));
+      assert.deepEqual({ ...results, finalObservations: 0 }, { ...expected, finalObservations: 0 });
     }
   }
-});
-
-test('with "Disabled" a snapshot has which episodes have ended', () => {
-  const batch = new Batch({ seed: 1, count: 2, autoreset: "Disabled" });
-  const { states } = batch;
-  batch.setStateOf(1, { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 });
-  batch.step([1, 1]);
-  batch.setStates(states);
-  assert.deepEqual([...Batch.restore(batch.snapshot()).step([1, 1]).ended], [0, 1]);
 });
 
 test("acrobots with own parameters have the bits of acrobots alone, also after a snapshot", () => {
@@ -226,7 +209,6 @@ test("acrobots with own parameters have the bits of acrobots alone, also after a
   const before = params();
   for (const [call, message] of [
     [() => batch.setParams({ inertia1: 0 }), /^RangeError: inertia1 must be above 0 if/],
-    [() => batch.setParamsOf(3, { mass1: -1 }), /^RangeError: mass1 must be finite .*, got -1$/],
     [() => batch.setParamsOf(COUNT, { mass1: 1 }), /index must be/],
     [() => new Batch({ ...OPTIONS, ownParams: 1 }), /^TypeError: ownParams must be .*, got 1$/],
   ]) {
@@ -258,30 +240,21 @@ test("a batch's snapshot has the bytes of Rust's postcard, and any other is reje
       batch.free();
       return true;
     } catch ({ name, message }) {
-      assert.match(`${name}: ${message}`, /^(RangeError|TypeError): the snapshot must /);
+      assert.match(`${name}: ${message}`, /^RangeError: the snapshot must be a valid one of /);
       return false;
     }
   };
   for (let length = 0; length < content.length; length++) {
     assert.ok(!restores(sealed(content.subarray(0, length))));
-  }
-  const longer = sealed(Buffer.concat([content, Buffer.of(0)]));
-  const acrobot = new Acrobot();
-  for (const other of [longer, content, acrobot.snapshot(), new Uint8Array(1000), "x", null]) {
-    assert.ok(!restores(other));
-  }
-  for (let byte = 0; byte < content.length; byte++) {
     for (const value of [0, 127, 128, 255]) {
-      const restored = restores(changed(snapshot, byte, value));
+      const restored = restores(changed(snapshot, length, value));
       // The number of acrobots and the header have only one value.
-      if (byte < 24) assert.equal(restored, value === content[byte]);
+      if (length < 24) assert.equal(restored, value === content[length]);
     }
   }
-  const message = /^the snapshot must be a valid one of "acrobot", .*, got 304 other bytes$/;
-  assert.throws(() => acrobot.restore(sealed(Buffer.alloc(300))), { message });
+  assert.ok(!restores(sealed(Buffer.concat([content, Buffer.of(0)]))));
+  assert.ok(!restores(new Acrobot().snapshot()));
 });
-
-const COUNTS = "count must be an integer from 1 to 2^32 - 1";
 
 test("invalid arguments are rejected, and nothing changes", () => {
   const batch = new Batch({ seed: 1, count: 3 });
@@ -293,39 +266,29 @@ test("invalid arguments are rejected, and nothing changes", () => {
   const rows = [
     ["RangeError", "actions must have 3 elements", ["2", step(new Uint8Array(2))]],
     ["TypeError", "actions must be an array of 3 elements", ["undefined", step()], ["3", step(3)]],
-    ["TypeError", `actions[0] ${ACTION}`, ['"0"', step("012")]],
     ["RangeError", `actions[1] ${ACTION}`,
-      ["3", step(Uint8Array.of(0, 3, 1))], ["-1", step(Int32Array.of(0, -1, 1))]],
-    ["TypeError", `actions[1] ${ACTION}`, ["undefined", step([0, , 1])]],
-    ["RangeError", `actions[2] ${ACTION}`, ["258", step([0, 1, 258])]],
-    ["TypeError", `actions[2] ${ACTION}`, ['"2"', step([0, 1, "2"])]],
+      ["3", step(Uint8Array.of(0, 3, 1))], ["-1", step(Int32Array.of(0, -1, 1))],
+      ["258", step([0, 258, 1])]],
+    ["TypeError", `actions[1] ${ACTION}`,
+      ["undefined", step([0, , 1])], ['"2"', step([0, "2", 1])]],
     ["RangeError", "torques[1] must be a finite number of N m",
       ["NaN", torque(Float32Array.of(0, NaN, 1))],
       ["1e+39, which is Infinity in single precision", torque([0, 1e39, 1])]],
-    ["TypeError", "torques[2] must be a finite number of N m", ['"2"', torque([0, 1, "2"])]],
-    ["RangeError", "torques must have 3 elements", ["2", torque(new Float32Array(2))]],
     ["RangeError", "states must have 12 elements", ["3", () => batch.setStates([1, 2, 3])]],
-    ["RangeError", "states[6] must be a finite number of rad/s",
+    ["RangeError", "states[6] must be a finite number of rad or rad/s",
       ["Infinity", () => batch.setStates([0, 0, 0, 0, 0, 0, Infinity, 0, 0, 0, 0, 0])]],
-    ["RangeError", "mask must have 3 elements", ["2", reset([1, 1])]],
-    ["TypeError", "mask must be an array of 3 elements", ["undefined", reset()]],
     ["RangeError", "mask[1] must be true, false, 1 or 0", ["2", reset([1, 2, 1])]],
     ["RangeError", SEED, ["-1", reset([1, 1, 1], -1)]],
     ["RangeError", "index must be an integer from 0 to 2",
       ["3", () => batch.setStateOf(3, {})],
-      ["3", () => batch.stateOf(3)],
       ["-1", () => batch.elapsedStepsOf(-1)]],
     ["TypeError", "index must be an integer from 0 to 2", ['"0"', () => batch.stateOf("0")]],
-    ["RangeError", "dt must be finite and above 0 s",
-      ["NaN", make({ count: 1, params: { dt: NaN } })]],
     ["RangeError", "ownParams must be true for parameters of each acrobot",
       ["false", () => batch.setParamsOf(0, { mass1: 2 })],
       ["false", () => batch.setDraws({ mass1: [1, 2] })],
       ["false", make({ count: 1, draws: { mass1: [1, 2] }, ownParams: false })]],
-    ["TypeError", "options must be a plain object",
-      ["undefined", make()], ["[object Date]", make(new Date())]],
-    ["TypeError", COUNTS, ["undefined", make({})]],
-    ["RangeError", COUNTS, ["0", make({ count: 0 })]],
+    ["TypeError", "options must be a plain object", ["undefined", make()]],
+    ["TypeError", "count must be an integer from 1 to 2^32 - 1", ["undefined", make({})]],
     ["RangeError", "acrobots must fit into WebAssembly's memory of at most 4 GiB",
       ["200000000 more", make({ count: 2e8 })], ["4294967295 more", make({ count: 2 ** 32 - 1 })]],
     ["TypeError", 'autoreset must be "NextStep" or "SameStep" or "Disabled"',
@@ -338,13 +301,12 @@ test("invalid arguments are rejected, and nothing changes", () => {
   batch.free();
   for (const use of [
     step([0, 0, 0]),
-    torque([0, 0, 0]),
     () => batch.setStates(new Float32Array(12)),
     reset([1, 1, 1]),
     ...["reset", "stateOf", "elapsedStepsOf", "snapshot"].map((name) => () => batch[name](0)),
-    ...["observations", "params", "states"].map((name) => () => batch[name]),
+    ...["params", "states"].map((name) => () => batch[name]),
   ]) {
-    assert.throws(use, { name: "Error", message: "the batch has been freed" });
+    assert.throws(use, /^Error: the batch has been freed$/);
   }
 });
 
@@ -368,18 +330,18 @@ test("memory grows while batches are in use, and is used again once they are fre
   const content = new Batch({ count: 2 }).snapshot().subarray(1, -4);
   const claim = sealed(Buffer.concat([Buffer.from("81ade204", "hex"), content]));
   assert.throws(() => Batch.restore(claim), /with invalid contents$|got "batch"/);
-  for (let i = 0; i < 200; i++) {
+  for (let i = 0; i < 50; i++) {
     new Batch({ count: 1 + ((i * 7919) % 50_000), seed: i }).free();
     assert.throws(() => new Batch({ count: 1000, params: { dt: -1 } }));
   }
-  for (let i = 0; i < 2000; i++) {
-    for (const acrobot of Array.from({ length: 10 }, () => new Acrobot())) acrobot.free();
+  for (let i = 0; i < 200; i++) {
+    for (const acrobot of Array.from({ length: 100 }, () => new Acrobot())) acrobot.free();
   }
   assert.equal(size(), grown);
 
   setFlagsFromString("--expose-gc");
   const collect = runInNewContext("gc");
-  for (let i = 0; i < 100; i++) {
+  for (let i = 0; i < 20; i++) {
     for (let j = 0; j < 20; j++) new Batch({ count: 1000, seed: j });
     collect();
     await new Promise((resolve) => setTimeout(resolve));

@@ -103,31 +103,25 @@ test("the programs of the documentation run in Node.js and print what they say",
 test("types pass tsc --strict, with the newest TypeScript and with 5.2", () => {
   PROGRAMS.forEach((program, i) => write(`program${i}.mts`, program));
   const typed = readFileSync(join(here, "test/typed.ts"));
-  for (const extension of ["ts", "mts", "cts"]) write(`typed.${extension}`, typed);
+  for (const extension of ["mts", "cts"]) write(`typed.${extension}`, typed);
   const programs = PROGRAMS.map((_, i) => `program${i}.mts`);
   const compiler = (name) => join(here, "node_modules", name, "bin/tsc");
   const [newest, oldest] = [compiler("typescript"), compiler("oldest-typescript")];
+  const check = (tsc, ...given) => assert.equal(run("node", [tsc, ...given]), "");
   const strict = ["--strict", "--noEmit", "--target", "es2022", "--module"];
-  for (const [tsc, module, ...files] of [
-    [newest, ["nodenext"], "typed.mts", "typed.cts", ...programs],
-    [newest, ["esnext", "--moduleResolution", "bundler"], "typed.mts", ...programs],
-    [oldest, ["node16"], "typed.mts", "typed.cts"],
-    [oldest, ["esnext", "--moduleResolution", "bundler"], "typed.ts"],
-    [oldest, ["commonjs"], "typed.ts"],
-  ]) {
-    assert.equal(run("node", [tsc, ...strict, ...module, ...files]), "");
-  }
+  check(newest, ...strict, "nodenext", "typed.mts", "typed.cts", ...programs);
+  check(oldest, ...strict, "node16", "typed.mts", "typed.cts");
   // Without any option, which means ES5.
   const plain = 'import { Acrobot } from "acrobot-rs";\nnew Acrobot().step(1);\n';
   const policies = 'import { bangBang } from "acrobot-rs/policies";\nbangBang(new Acrobot());\n';
   write("plain.ts", plain + policies);
-  assert.equal(run("node", [oldest, "plain.ts"]), "");
+  check(oldest, "plain.ts");
   // Without the types of a browser.
   write("server.mts", plain);
-  const server = ["--strict", "--noEmit", "--lib", "es2022", "--module", "nodenext", "server.mts"];
-  for (const tsc of [newest, oldest]) assert.equal(run("node", [tsc, ...server]), "");
+  check(newest, ...strict, "nodenext", "--lib", "es2022", "server.mts");
 });
 
+// `attw` resolves the types as each of TypeScript's module resolutions does.
 test("no linter of packages has a warning", () => {
   const packed = join(here, `acrobot-rs-${version}.tgz`);
   const lint = (name, ...options) =>
@@ -145,17 +139,12 @@ const bundled = (contents, format, minify) => {
   return buildSync({ ...options, write: false }).outputFiles[0].text;
 };
 
-test("bundles of every format run in Node.js and in a browser, with classes' names", async () => {
-  const names = `
-    import { Batch } from "acrobot-rs";
-    import { Learner, Perceptron } from "acrobot-rs/policies";
-    console.log([Acrobot, Batch, Learner, Perceptron].map(({ name }) => name).join());`;
+test("bundles of every format run in Node.js and in a browser", async () => {
   for (const format of ["esm", "cjs", "iife"]) {
     for (const minify of [false, true]) {
-      const path = join(folder, `bundle.${format === "esm" ? "mjs" : "cjs"}`);
-      writeFileSync(path, bundled(PROGRAMS[0] + names, format, minify));
-      const lines = [printed(PROGRAMS[0]), "Acrobot,Batch,Learner,Perceptron", ""];
-      assert.deepEqual(run("node", [path]).split("\n"), lines);
+      const name = `bundle.${format === "esm" ? "mjs" : "cjs"}`;
+      write(name, bundled(PROGRAMS[0], format, minify));
+      assert.equal(run("node", [name]).trim(), printed(PROGRAMS[0]));
     }
   }
   write("bundle.js", bundled(PROGRAMS[0], "iife", true));
@@ -186,18 +175,13 @@ test("another realm, with few globals and without compilation, takes a compiled 
   const acrobot = new Acrobot({ seed: 42 });
   while (!acrobot.step(policies.bangBang(acrobot)).terminated);
   assert.equal(acrobot.elapsedSteps, 94);
+  // Bytes, arrays and objects of this realm.
   acrobot.restore(Buffer.from(new Acrobot({ seed: 42 }).snapshot()));
   assert.equal(acrobot.elapsedSteps, 0);
   assert.deepEqual([...new Batch({ count: 2 }).step(Uint8Array.of(0, 2)).rewards], [-1, -1]);
-  const gravity = "gravity must be a finite number of m/s², got NaN";
-  fails(() => acrobot.setParams({ gravity: NaN }), gravity);
-  const batch = new Batch({ count: 1 }).snapshot();
-  fails(() => acrobot.restore(batch), /friction false, got "batch", .*, friction false$/);
+  fails(() => acrobot.setParams({ dt: NaN }), "dt must be finite and above 0 s, got NaN");
   const policy = readFileSync(join(root, "crates/policy/policy.bin"));
   assert.equal(new policies.Perceptron(policy).act(acrobot), 2);
-  const learner = new policies.Learner({ seed: 1 });
-  learner.load(Buffer.from(learner.save()));
-  fails(() => learner.load(policy), /^weights must begin with the bytes TILE$/);
   acrobot.free();
 });
 

@@ -64,27 +64,24 @@ test("invalid weights and other arguments are rejected, weights with the native 
     assert.throws(() => learner.load(bytes), isNative);
   }
   const act = (state) => () => learner.act({ state });
-  const finite = (what) => `${what} must be a finite number`;
-  const theta1 = finite("act(acrobot): acrobot.state.theta1");
-  const wrong = [undefined, {}, new Batch({ count: 1 }), new Acrobot().observation];
+  const wrong = [undefined, {}, new Batch({ count: 1 })];
   const withWrong = (call) => wrong.map((each) => ["undefined", () => call(each)]);
   const rows = [
     ["RangeError", "weights must have at most 524288 bytes",
       ["1000000", () => learner.load(new Uint8Array(1e6))]],
-    ["TypeError", "weights must be a Uint8Array", ["[84,73]", () => learner.load([84, 73])]],
-    ["RangeError", theta1,
+    ["TypeError", "weights must be a Uint8Array",
+      ["[object Array]", () => learner.load([84, 73])]],
+    ["RangeError", "acrobot.state.theta1 must be a finite number",
       ["NaN", act({ theta1: NaN })],
       ["1e+300, which is Infinity in single precision", act({ theta1: 1e300 })]],
-    ["TypeError", "train() must have no arguments", ["10", () => learner.train(10)]],
-    ["TypeError", theta1, ...withWrong((each) => learner.act(each))],
-    ["TypeError", finite("bangBang(acrobot): acrobot.state.dtheta1"), ...withWrong(bangBang)],
-    ["TypeError", finite("energyLaw(acrobot): acrobot.energy"), ...withWrong(energyLaw)],
-    ["TypeError", finite("uprightEnergy(params): params.gravity"), ...withWrong(uprightEnergy)],
+    ["TypeError", "acrobot.state.theta1 must be a finite number",
+      ...withWrong((each) => learner.act(each))],
+    ["TypeError", "acrobot.state.dtheta1 must be a finite number", ...withWrong(bangBang)],
+    ["TypeError", "acrobot.energy must be a finite number", ...withWrong(energyLaw)],
+    ["TypeError", "params.gravity must be a finite number", ...withWrong(uprightEnergy)],
     ["RangeError", "episodes must be an integer from 1 to 2^32 - 1",
       ["0", () => new Learner({ episodes: 0 })]],
     ["TypeError", "options must be among episodes, seed", ["sed", () => new Learner({ sed: 1 })]],
-    ["TypeError", "options must be a plain object",
-      ["[object Map]", () => new Learner(new Map([["seed", 1]]))]],
   ];
   assertRejected(rows, () => assert.deepEqual(learner.save(), good));
   assert.throws(() => new Learner({ seed: -1 }), /^RangeError: seed must be .*, got -1$/);
