@@ -1,11 +1,13 @@
-// Builds the page into dist/: its files, and the npm package.
+// Builds the page into dist/: its files, and those of the npm package.
 
 import { cpSync, rmSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 
-import { bundle } from "../../bindings/npm/wasm.mjs";
+import "../../bindings/npm/build.mjs";
 
 process.chdir(fileURLToPath(new URL(".", import.meta.url)));
 rmSync("dist", { recursive: true, force: true });
 cpSync("page", "dist", { recursive: true });
-bundle("dist/acrobot-rs");
+for (const file of ["index.js", "policies.js"]) {
+  cpSync(`../../bindings/npm/dist/${file}`, `dist/acrobot-rs/${file}`);
+}

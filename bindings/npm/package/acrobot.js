@@ -7,7 +7,7 @@ import {
 } from "./kept.js";
 import { load, save } from "./snapshot.js";
 import {
-  checked, copied, integers, invalid, invalidSingle, numbers, positive, randomSeed, wasm,
+  checked, integers, invalid, invalidSingle, numbers, positive, randomSeed, wasm,
 } from "./wasm.js";
 
 /** A loop, because `slice` takes half as long again. */
@@ -43,9 +43,8 @@ export class Acrobot extends Kept {
   }
 
   static restore(snapshot) {
-    const copy = copied("the snapshot", snapshot);
     const acrobot = new this();
-    orFree(acrobot, () => load(acrobot, copy, true));
+    orFree(acrobot, () => load(acrobot, snapshot, true));
     return acrobot;
   }
 
@@ -118,7 +117,7 @@ export class Acrobot extends Kept {
   }
 
   restore(snapshot) {
-    load(this, copied("the snapshot", snapshot), false);
+    load(this, snapshot, false);
     [this.#action, this.#torque] = [1];
   }
 

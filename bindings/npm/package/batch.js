@@ -7,7 +7,7 @@ import {
 } from "./kept.js";
 import { load, save } from "./snapshot.js";
 import {
-  checked, copied, integers, invalid, numbers, positive, randomSeed, wasm,
+  checked, integers, invalid, numbers, positive, randomSeed, wasm,
 } from "./wasm.js";
 
 /**
@@ -61,10 +61,9 @@ export class Batch extends Kept {
   }
 
   static restore(snapshot) {
-    const copy = copied("the snapshot", snapshot);
     const batch = new this({ count: 1 });
     orFree(batch, () => {
-      load(batch, copy);
+      load(batch, snapshot);
       batch.#open();
     });
     return batch;

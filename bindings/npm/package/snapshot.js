@@ -1,10 +1,13 @@
 // Saves and loads snapshots, which the module reads and writes.
 
 import { call } from "./kept.js";
-import { bytes, integers, text, wasm } from "./wasm.js";
+import { bytes, copied, integers, wasm } from "./wasm.js";
 
 const noMemory = () =>
   new RangeError("WebAssembly's memory of at most 4 GiB has no room for the snapshot");
+
+/** Why the module rejects a snapshot. */
+const REASONS = ["another checksum", "another class, version or task", "invalid contents"];
 
 export function save(kept) {
   const length = call(kept, "save");
@@ -15,34 +18,19 @@ export function save(kept) {
   return snapshot;
 }
 
-/** Calls a function with the address and the length of a copy in the module's memory. */
-function lent(snapshot, use) {
-  const { length } = snapshot;
+/** Loads a snapshot, of the same task or of any, or throws. */
+export function load(kept, snapshot, anyTask) {
+  const copy = copied("the snapshot", snapshot);
+  const { length } = copy;
   const at = wasm().snapshot_new(length) >>> 0;
   if (at === 0) throw noMemory();
-  bytes(at, length).set(snapshot);
+  bytes(at, length).set(copy);
   try {
-    return use(at, length);
+    const rejected = call(kept, "load", at, length, anyTask);
+    if (rejected === 0) return;
+    const rule = "the snapshot must be an undamaged one of the same class, version and task";
+    throw new RangeError(`${rule}, got ${length} bytes with ${REASONS[rejected - 1]}`);
   } finally {
     wasm().snapshot_free(at, length);
   }
-}
-
-/** What a snapshot says that it is. */
-const described = (snapshot) =>
-  lent(snapshot, (...given) => {
-    const found = wasm().snapshot_header(...given);
-    const what = ["bytes with another checksum", "other bytes"][found];
-    if (what) return `${snapshot.length} ${what}`;
-    const [version, friction] = integers();
-    const names = `task "${text(4)}", arithmetic "${text(6)}", friction ${friction === 1}`;
-    return `"${text(2)}", version ${version}, ${names}`;
-  });
-
-/** Loads a snapshot, of the same task or of any, or throws. */
-export function load(kept, snapshot, anyTask) {
-  if (lent(snapshot, (...given) => call(kept, "load", ...given, anyTask))) return;
-  const [own, got] = [save(kept), snapshot].map(described);
-  const found = got === own ? "one with invalid contents" : got;
-  throw new RangeError(`the snapshot must be a valid one of ${own}, got ${found}`);
 }

@@ -2,7 +2,7 @@
 
 import inflate from "tiny-inflate";
 
-// wasm.mjs defines the MODULE, in DEFLATE and base64, its LENGTH in bytes and its EXPORTS.
+// build.mjs defines the MODULE, in DEFLATE and base64, its LENGTH in bytes and its EXPORTS.
 
 let compiled;
 
@@ -83,7 +83,7 @@ export class Opaque {
   }
 }
 
-/** A copy of a Uint8Array of any realm, which may be in memory that another thread writes. */
+/** A copy of a Uint8Array. In jsdom, Node.js's bytes are of another realm. */
 export function copied(what, given) {
   if (given?.[Symbol.toStringTag] !== "Uint8Array") {
     throw invalid(`${what} must be a Uint8Array`, given, []);

@@ -12,7 +12,7 @@ use acrobot::{Error, Fast, Params, ResetOptions};
 use serde::Serialize;
 
 use crate::memory::{self, set_numbers, zeros};
-use crate::snapshot::{self, Reader, read};
+use crate::snapshot::{self, Reader, Rejected, read};
 use crate::{Tasks, with_task};
 
 /// As many as one vector of simd128 has. More take more code and more time.
@@ -314,7 +314,6 @@ type Fields = (State<f32>, u32, bool, Pcg64);
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_save(many: &Many) -> usize {
     let count = many.actions.len();
-    let header = snapshot::header("batch", many.batch.number());
     let (settings, draws): (Settings, _) = with_task!(&many.batch, batch => {
         let (bounds, draws) = (batch.reset_bounds(), *batch.draws().params());
         let (low, high, limit) = (bounds.low(), bounds.high(), batch.max_steps());
@@ -323,7 +322,7 @@ pub extern "C" fn batch_save(many: &Many) -> usize {
     // The settings have less than 512 bytes, each acrobot at most 151.
     snapshot::save(512 + count * 151, |writer| {
         (count as u32 + 1).serialize(&mut *writer)?;
-        snapshot::write_header(header, writer)?;
+        snapshot::write_header("batch", many.batch.number(), writer)?;
         settings.serialize(&mut *writer)?;
         snapshot::write_params(draws, writer)?;
         for index in 0..count {
@@ -341,17 +340,21 @@ pub extern "C" fn batch_save(many: &Many) -> usize {
     })
 }
 
-fn load(content: &[u8]) -> Option<Many> {
-    let mut reader = Reader::from_bytes(content);
-    let count = read::<u32>(&mut reader)?.checked_sub(1)? as usize;
-    let task = snapshot::task_of("batch", snapshot::read_header(&mut reader)?)?;
+fn load(mut reader: Reader<'_>, len: usize) -> Result<Many, Rejected> {
+    let count: u32 = read(&mut reader).ok_or(Rejected::Header)?;
+    let task = snapshot::read_header(&mut reader, "batch")?;
+    let count = count.saturating_sub(1) as usize;
+    // Parameters and state have 89 bytes. Other numbers could take all memory.
+    if count > len / 89 {
+        return Err(Rejected::Contents);
+    }
+    load_fields(reader, count, task).ok_or(Rejected::Contents)
+}
+
+fn load_fields(mut reader: Reader<'_>, count: usize, task: u32) -> Option<Many> {
     let (low, high, max_steps, autoreset, own_params) = read::<Settings>(&mut reader)?;
     let mut draws: Params<Draw<f32>> = Draws::FIXED;
     snapshot::read_params(&mut reader, &mut draws)?;
-    // Parameters and state have 89 bytes. Other numbers could take all memory.
-    if count > content.len() / 89 {
-        return None;
-    }
     let mut many = Many::new(count, own_params, task)?;
     for index in 0..count {
         let mut params = Params::DEFAULT;
@@ -377,13 +380,12 @@ fn load(content: &[u8]) -> Option<Many> {
     reader.finalize().ok()?.is_empty().then_some(many)
 }
 
-/// Loads a snapshot. Returns false and changes nothing if it is invalid, or without memory.
+/// Loads a snapshot. If it is invalid, or without memory, nothing changes.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_load(many: &mut Many, address: *const u8, len: usize) -> bool {
-    let Some(mut loaded) = snapshot::open(address, len).and_then(load) else {
-        return false;
-    };
-    mem::swap(&mut loaded.action_space, &mut many.action_space);
-    *many = loaded;
-    true
+pub extern "C" fn batch_load(many: &mut Many, address: *const u8, len: usize) -> u32 {
+    let loaded = snapshot::open(address, len).and_then(|reader| load(reader, len));
+    snapshot::code(loaded.map(|mut loaded| {
+        mem::swap(&mut loaded.action_space, &mut many.action_space);
+        *many = loaded;
+    }))
 }

@@ -10,7 +10,7 @@ use acrobot::{Acrobot, Action, Error, Fast, Params, Step};
 use serde::Serialize;
 
 use crate::memory::{self, set_numbers};
-use crate::snapshot::{self, Reader, read};
+use crate::snapshot::{self, Reader, Rejected, read};
 use crate::{Tasks, with_task};
 
 type AnyTask = Tasks<Acrobot<Fast>, Acrobot<Damped<Fast>, Swingup>>;
@@ -167,9 +167,8 @@ pub extern "C" fn acrobot_save(one: &One) -> usize {
     let (params, state, rng) =
         with_task!(&one.acrobot, acrobot => (*acrobot.params(), acrobot.state(), acrobot.rng()));
     let fields: Fields<_> = (state, rng, one.max_steps, one.elapsed_steps);
-    let header = snapshot::header("acrobot", one.acrobot.number());
     snapshot::save(256, |writer| {
-        snapshot::write_header(header, writer)?;
+        snapshot::write_header("acrobot", one.acrobot.number(), writer)?;
         snapshot::write_params(params, writer)?;
         fields.serialize(writer)
     })
@@ -184,14 +183,19 @@ fn load<A: Arithmetic<Scalar = f32>, T: Task>(
 }
 
 impl One {
-    fn load(&mut self, content: &[u8], any_task: bool) -> Option<()> {
-        let mut reader = Reader::from_bytes(content);
-        let task = snapshot::task_of("acrobot", snapshot::read_header(&mut reader)?)?;
+    fn load(&mut self, mut reader: Reader<'_>, any_task: bool) -> Result<(), Rejected> {
+        let task = snapshot::read_header(&mut reader, "acrobot")?;
+        if !any_task && task != self.acrobot.number() {
+            return Err(Rejected::Header);
+        }
+        self.load_fields(reader, task).ok_or(Rejected::Contents)
+    }
+
+    fn load_fields(&mut self, mut reader: Reader<'_>, task: u32) -> Option<()> {
         let mut params = Params::DEFAULT;
         snapshot::read_params(&mut reader, &mut params)?;
         let (state, rng, max_steps, elapsed_steps) = read::<Fields<Pcg64>>(&mut reader)?;
-        let is_whole = reader.finalize().is_ok_and(<[u8]>::is_empty);
-        if !is_whole || !any_task && task != self.acrobot.number() {
+        if !reader.finalize().ok()?.is_empty() {
             return None;
         }
         self.acrobot = match task {
@@ -204,15 +208,14 @@ impl One {
     }
 }
 
-/// Loads a snapshot, of any task or of the same. Returns false and changes nothing if it is
-/// invalid.
+/// Loads a snapshot, of any task or of the same. If it is invalid, nothing changes.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_load(
     one: &mut One,
     address: *const u8,
     len: usize,
     any_task: bool,
-) -> bool {
-    let content = snapshot::open(address, len);
-    content.is_some_and(|content| one.load(content, any_task).is_some())
+) -> u32 {
+    let reader = snapshot::open(address, len);
+    snapshot::code(reader.and_then(|reader| one.load(reader, any_task)))
 }

@@ -13,23 +13,31 @@ use postcard::ser_flavors::{Flavor, Slice};
 use postcard::{Deserializer, Serializer, de_flavors};
 use serde::{Deserialize, Serialize};
 
-use crate::memory::{self, text, zeros};
+use crate::memory::{self, zeros};
+
+/// Why JavaScript's snapshot is rejected, as JavaScript numbers it.
+pub enum Rejected {
+    Checksum = 1,
+    /// Another type, version or task.
+    Header,
+    Contents,
+}
+
+/// What JavaScript gets: 0, or the reason.
+pub fn code(loaded: Result<(), Rejected>) -> u32 {
+    loaded.map_or_else(|rejected| rejected as u32, |()| 0)
+}
 
 /// Type, version, task, arithmetic and friction.
-pub type Header<'a> = (&'a str, u32, &'a str, &'a str, bool);
+type Header<'a> = (&'a str, u32, &'a str, &'a str, bool);
 
 /// As in the crate, whose snapshots the tests compare with.
-pub fn header(of: &'static str, task: u32) -> Header<'static> {
+fn header(of: &'static str, task: u32) -> Header<'static> {
     const VERSION: u32 = 4;
     match task {
         0 => (of, VERSION, Gymnasium::NAME, Fast::NAME, Fast::HAS_FRICTION),
         _ => (of, VERSION, Swingup::NAME, Damped::<Fast>::NAME, Damped::<Fast>::HAS_FRICTION),
     }
-}
-
-/// The task of a snapshot with this header.
-pub fn task_of(of: &'static str, found: Header<'_>) -> Option<u32> {
-    [0, 1].into_iter().find(|task| found == header(of, *task))
 }
 
 pub type Writer<'a> = Serializer<Slice<'a>>;
@@ -40,13 +48,17 @@ pub fn read<'a, T: Deserialize<'a>>(reader: &mut Reader<'a>) -> Option<T> {
     T::deserialize(reader).ok()
 }
 
-// Field by field: as a tuple it would take 2 KB more.
-pub fn read_header<'a>(reader: &mut Reader<'a>) -> Option<Header<'a>> {
-    Some((read(reader)?, read(reader)?, read(reader)?, read(reader)?, read(reader)?))
+/// Reads a header. Returns its task.
+pub fn read_header(reader: &mut Reader<'_>, of: &'static str) -> Result<u32, Rejected> {
+    // Field by field: as a tuple it would take 2 KB more.
+    let mut found =
+        || Some((read(reader)?, read(reader)?, read(reader)?, read(reader)?, read(reader)?));
+    let found = found().ok_or(Rejected::Header)?;
+    [0, 1].into_iter().find(|task| found == header(of, *task)).ok_or(Rejected::Header)
 }
 
-pub fn write_header(header: Header<'_>, writer: &mut Writer<'_>) -> postcard::Result<()> {
-    let (of, version, task, arithmetic, friction) = header;
+pub fn write_header(of: &'static str, task: u32, writer: &mut Writer<'_>) -> postcard::Result<()> {
+    let (of, version, task, arithmetic, friction) = header(of, task);
     of.serialize(&mut *writer)?;
     version.serialize(&mut *writer)?;
     task.serialize(&mut *writer)?;
@@ -129,32 +141,12 @@ pub fn save(limit: usize, write: impl FnOnce(&mut Writer<'_>) -> postcard::Resul
     len + 4
 }
 
-/// A snapshot that JavaScript has written, without its checksum, or `None` if that is wrong.
-pub fn open<'a>(address: *const u8, len: usize) -> Option<&'a [u8]> {
+/// A snapshot that JavaScript has written, without its checksum.
+pub fn open<'a>(address: *const u8, len: usize) -> Result<Reader<'a>, Rejected> {
     // SAFETY: the memory is from here, and JavaScript frees it after the call.
-    let (content, crc) = unsafe { slice::from_raw_parts(address, len) }.split_last_chunk()?;
-    (checksum(content) == *crc).then_some(content)
-}
-
-/// Writes version, friction, type, task and arithmetic. Returns 0 if the checksum is wrong, 1 if
-/// there is no header, or 2. A batch's is after the number of acrobots.
-#[unsafe(no_mangle)]
-pub extern "C" fn snapshot_header(address: *const u8, len: usize) -> u32 {
-    let Some(content) = open(address, len) else {
-        return 0;
-    };
-    let found = ["acrobot", "batch"].into_iter().find_map(|kind| {
-        let mut reader = Reader::from_bytes(content);
-        if kind == "batch" {
-            read::<u32>(&mut reader)?;
-        }
-        let (of, version, task, arithmetic, friction) = read_header(&mut reader)?;
-        if of != kind {
-            return None;
-        }
-        let [[a, b], [c, d], [e, f]] = [of, task, arithmetic].map(text);
-        memory::set(&[version, friction.into(), a, b, c, d, e, f]);
-        Some(())
-    });
-    found.map_or(1, |()| 2)
+    let snapshot = unsafe { slice::from_raw_parts(address, len) };
+    match snapshot.split_last_chunk() {
+        Some((content, crc)) if checksum(content) == *crc => Ok(Reader::from_bytes(content)),
+        _ => Err(Rejected::Checksum),
+    }
 }

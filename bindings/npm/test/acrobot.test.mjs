@@ -106,7 +106,7 @@ test("a swing-up's steps are those that dm_control recorded", () => {
   assert.equal(lines.length, 1000);
   const resumed = Acrobot.restore(acrobot.snapshot());
   assert.deepEqual(resumed.stepTorque(0.3), acrobot.stepTorque(0.3));
-  const rule = /task "gymnasium", .*friction false, got .*task "swingup", .*friction true$/;
+  const rule = /^RangeError: the snapshot must be .* task, got .* another class, version or task$/;
   assert.throws(() => new Acrobot().restore(acrobot.snapshot()), rule);
 });
 
@@ -240,23 +240,22 @@ test("damaged snapshots, and those of others, are rejected, and nothing changes"
     assert.throws(() => acrobot.restore(bytes), error);
     assert.deepEqual(acrobot.snapshot(), before);
   };
+  const rejectsFor = (reason, bytes) => {
+    const rule = "the snapshot must be an undamaged one of the same class, version and task";
+    const message = `${rule}, got ${bytes.length} bytes with ${reason}`;
+    rejects(bytes, { name: "RangeError", message });
+  };
   before.forEach((byte, i) => {
     for (const damaged of [before.with(i, byte ^ 1), before.slice(0, i)]) {
-      rejects(damaged, /^RangeError: the snapshot must be .*, got \d+ bytes with another checksum$/);
+      rejectsFor("another checksum", damaged);
     }
   });
-  const fields = 'task "gymnasium", arithmetic "fast", friction false';
-  const rule = `the snapshot must be a valid one of "acrobot", version 4, ${fields}`;
-  for (const [bytes, found] of [
-    [changed(before, 8, 3), `"acrobot", version 3, ${fields}`],
-    // A length1 of NaN.
-    [changed(before, 25, 0, 0, 0xc0, 0x7f), "one with invalid contents"],
-    [new Batch({ count: 5 }).snapshot(), `"batch", version 4, ${fields}`],
-    [sealed(Buffer.from("text")), "8 other bytes"],
-    [Uint8Array.of(...before, 0), `${before.length + 1} bytes with another checksum`],
-  ]) {
-    rejects(bytes, { name: "RangeError", message: `${rule}, got ${found}` });
-  }
+  const other = "another class, version or task";
+  rejectsFor(other, changed(before, 8, 3)); // version 3
+  rejectsFor(other, new Batch({ count: 5 }).snapshot());
+  rejectsFor(other, sealed(Buffer.from("text")));
+  rejectsFor("invalid contents", changed(before, 25, 0, 0, 0xc0, 0x7f)); // a length1 of NaN
+  rejectsFor("invalid contents", sealed(Buffer.concat([before.subarray(0, -4), Buffer.of(0)])));
   const message = "the snapshot must be a Uint8Array, got [object ArrayBuffer]";
   rejects(before.buffer, { name: "TypeError", message });
   // Any bytes with the right checksum.
@@ -266,7 +265,7 @@ test("damaged snapshots, and those of others, are rejected, and nothing changes"
       acrobot.restore(changed(before, random(before.length - 4), random(256)));
       acrobot.step(2);
     } catch ({ message }) {
-      assert.match(message, /^the snapshot must be a valid one of /);
+      assert.match(message, /^the snapshot must be an undamaged one /);
     }
     acrobot.restore(before);
   }

@@ -240,7 +240,7 @@ test("a batch's snapshot has the bytes of Rust's postcard, and any other is reje
       batch.free();
       return true;
     } catch ({ name, message }) {
-      assert.match(`${name}: ${message}`, /^RangeError: the snapshot must be a valid one of /);
+      assert.match(`${name}: ${message}`, /^RangeError: the snapshot must be an undamaged one /);
       return false;
     }
   };
@@ -329,7 +329,7 @@ test("memory grows while batches are in use, and is used again once they are fre
   // Two acrobots that claim to be ten million.
   const content = new Batch({ count: 2 }).snapshot().subarray(1, -4);
   const claim = sealed(Buffer.concat([Buffer.from("81ade204", "hex"), content]));
-  assert.throws(() => Batch.restore(claim), /with invalid contents$|got "batch"/);
+  assert.throws(() => Batch.restore(claim), /with invalid contents$/);
   for (let i = 0; i < 50; i++) {
     new Batch({ count: 1 + ((i * 7919) % 50_000), seed: i }).free();
     assert.throws(() => new Batch({ count: 1000, params: { dt: -1 } }));
