@@ -5,7 +5,7 @@ import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { dist, linkedActions, onPage, open, paused, says, stepped, text } from "./player.mjs";
+import { dist, linkedActions, onPage, paused, stepped, text } from "./player.mjs";
 
 const touched = { hasTouch: true, isMobile: true };
 const SCREENS = {
@@ -57,126 +57,64 @@ onPage("a touched half of the picture applies torque", SCREENS.landscape, async 
   assert.deepEqual(await linkedActions(page), [0, 1, 2, 1, 2, 1]);
 });
 
-/** Records the boxes of the labels that each plot shows. */
-function recordLabels() {
-  const { fillText } = CanvasRenderingContext2D.prototype;
-  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
-    const { canvas } = this;
-    if (!canvas.drawing) {
-      canvas.labels = [];
-      canvas.drawing = true;
-      queueMicrotask(() => (canvas.drawing = false));
-    }
-    const box = this.measureText(text);
-    canvas.labels.push({
-      name: text,
-      left: x - box.actualBoundingBoxLeft,
-      right: x + box.actualBoundingBoxRight,
-      top: y - box.actualBoundingBoxAscent,
-      bottom: y + box.actualBoundingBoxDescent,
-    });
-    fillText.call(this, text, x, y);
-  };
-}
-
-/**
- * Pairs of controls and texts, or of a plot's labels, that overlap; labels outside of a plot. The
- * picture may be behind its own texts.
- */
+/** Pairs of controls and texts that overlap. The picture may be behind its own texts. */
 const overlaps = (page) =>
   page.evaluate(() => {
-    const pairs = (boxes, room) => {
-      const before = (a, b) => a.right + room <= b.left || a.bottom + room <= b.top;
-      return boxes.flatMap((a, i) => {
-        const others = boxes.slice(i + 1).filter((b) => {
-          return !a.element?.contains(b.element) && !before(a, b) && !before(b, a);
-        });
-        return others.map((b) => `${a.name} and ${b.name}`);
-      });
-    };
     const found = document.querySelectorAll(
       "button, input, select, label, p, figcaption, figure canvas, #stage, h1, h2, summary",
     );
-    const shown = [...found].filter((element) => {
-      return element.checkVisibility() && element.getBoundingClientRect().height > 0;
-    });
-    const boxes = shown.map((element) => {
+    const boxes = [...found].filter((element) => element.checkVisibility()).map((element) => {
       const { left, right, top, bottom } = element.getBoundingClientRect();
-      const name = element.id || element.textContent.slice(0, 30);
-      return { element, name, left, right, top: top + 0.5, bottom: bottom - 0.5 };
+      return { element, left, right, top: top + 0.5, bottom: bottom - 0.5 };
     });
-    const plots = [...document.querySelectorAll("figure canvas")].flatMap((canvas) => {
-      const { clientWidth, labels } = canvas;
-      const outside = labels.filter(({ left, right }) => left < 0 || right > clientWidth + 1);
-      const names = outside.map(({ name }) => `${name} outside`);
-      return [...pairs(labels, 4), ...names].map((pair) => `${canvas.id}: ${pair}`);
+    const before = (a, b) => a.right <= b.left || a.bottom <= b.top;
+    const isOverlap = (a, b) => !a.element.contains(b.element) && !before(a, b) && !before(b, a);
+    return boxes.flatMap((a, i) => {
+      const others = boxes.slice(i + 1).filter((b) => isOverlap(a, b));
+      return others.map((b) => `${a.element.outerHTML} and ${b.element.outerHTML}`);
     });
-    return [...pairs(boxes, 0), ...plots];
   });
 
-test("each screen shows what its player needs, and nothing overlaps or is wider", async () => {
-  mkdirSync(join(dist, "screenshots"), { recursive: true });
-  for (const [name, options] of Object.entries(SCREENS)) {
+for (const [name, options] of Object.entries(SCREENS)) {
+  onPage(`a ${name} shows what its player needs, and nothing overlaps`, options, async (page) => {
     const { width, height } = options.viewport;
-    await open({ ...options, prepare: recordLabels }, async (page) => {
-      const hint = options.hasTouch ? "#touch" : "#keys";
-      const hints = await page.evaluate(() => {
-        const isShown = (id) => document.querySelector(id).checkVisibility();
-        return ["#keys", "#touch"].filter(isShown);
-      });
-      assert.deepEqual(hints, [hint]);
-      assert.equal(/←|→/.test(await text(page, "#status")), !options.hasTouch);
-      const inView = async (...ids) => {
-        for (const id of ids) {
-          const box = await page.locator(`#${id}`).boundingBox();
-          const isInside = box.x >= 0 && box.x + box.width <= width;
-          assert.ok(isInside && box.y >= 0 && box.y + box.height <= height, `${name}: ${id}`);
-        }
-      };
-      await inView("stage", "left", "right", "pause", "reset", "step", "best");
-      const stage = await page.locator("#stage").boundingBox();
-      assert.ok(stage.width > 0.8 * Math.min(width, height, 500), `${stage.width}`);
-      const train = await page.locator("#train").boundingBox();
-      assert.ok(train.y < 1120, `Train is at ${train.y}`);
-
-      await page.fill("#episodes", "130");
-      await page.click("#train");
-      await page.selectOption("#pace", "4");
-      await stepped(page, 40);
-      await page.click("#pause");
-      await says(page, "#train", /^Train$/);
-      // The first episodes return −400.
-      const labels = await page.evaluate(() => document.querySelector("#curve").labels);
-      assert.deepEqual(labels.slice(0, 3).map(({ name }) => name), ["−200", "−100", "0"]);
-      for (const id of ["drive", "gravity"]) {
-        await page.evaluate((id) => document.querySelector(`#${id}`).scrollIntoView(), id);
-        await text(page, "#step");
-        await inView("stage");
-        assert.deepEqual((await overlaps(page)).filter((pair) => pair.includes(id)), []);
+    assert.equal(await page.isVisible("#touch"), Boolean(options.hasTouch));
+    assert.equal(await page.isVisible("#keys"), !options.hasTouch);
+    assert.equal(/←|→/.test(await text(page, "#status")), !options.hasTouch);
+    const inView = async (...ids) => {
+      for (const id of ids) {
+        const box = await page.locator(`#${id}`).boundingBox();
+        const isInside = box.x >= 0 && box.x + box.width <= width;
+        assert.ok(isInside && box.y >= 0 && box.y + box.height <= height, id);
       }
-      await page.evaluate(() => scrollTo(0, 0));
-      for (const colorScheme of ["light", "dark"]) {
-        await page.emulateMedia({ colorScheme });
-        await text(page, "#step");
-        const path = join(dist, "screenshots", `${name}-${colorScheme}.png`);
-        // A picture of a full page would end the emulation of touch.
-        await page.screenshot({ path, fullPage: !options.hasTouch });
-      }
-      const filled = await page.evaluate(() =>
-        [...document.querySelectorAll("section")].map((section) => {
-          const { top, height } = section.getBoundingClientRect();
-          const bottom = (child) => child.getBoundingClientRect().bottom;
-          return (Math.max(...Array.from(section.children, bottom)) - top) / height;
-        }),
-      );
-      assert.ok(Math.min(...filled) > 0.6, `${name}: parts of the panels with content: ${filled}`);
-      const others = name === "desktop" ? [832, 1000, 1920] : [320, 568, 667, 932];
-      for (const other of [width, ...others]) {
-        await page.setViewportSize({ width: other, height });
-        await text(page, "#step");
-        assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), other);
-        assert.deepEqual(await overlaps(page), [], `${other}×${height}`);
-      }
-    });
-  }
-});
+    };
+    await inView("stage", "left", "right", "pause", "reset", "step", "best");
+    const stage = await page.locator("#stage").boundingBox();
+    assert.ok(stage.width > 0.8 * Math.min(width, height, 500), `${stage.width}`);
+    await page.selectOption("#pace", "4");
+    await stepped(page, 40);
+    await page.click("#pause");
+    // The picture stays in view.
+    for (const id of ["drive", "gravity"]) {
+      await page.evaluate((id) => document.querySelector(`#${id}`).scrollIntoView(), id);
+      await text(page, "#step");
+      await inView("stage");
+    }
+    await page.evaluate(() => scrollTo(0, 0));
+    mkdirSync(join(dist, "screenshots"), { recursive: true });
+    for (const colorScheme of ["light", "dark"]) {
+      await page.emulateMedia({ colorScheme });
+      await text(page, "#step");
+      const path = join(dist, "screenshots", `${name}-${colorScheme}.png`);
+      // A picture of a full page would end the emulation of touch.
+      await page.screenshot({ path, fullPage: !options.hasTouch });
+    }
+    const others = name === "desktop" ? [832, 1000, 1920] : [320, 568, 667, 932];
+    for (const other of [width, ...others]) {
+      await page.setViewportSize({ width: other, height });
+      await text(page, "#step");
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), other);
+      assert.deepEqual(await overlaps(page), [], `${other}×${height}`);
+    }
+  });
+}
