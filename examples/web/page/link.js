@@ -1,6 +1,6 @@
 // A run in an address, after the #: seed, parameters that differ from Gymnasium's, and actions.
 
-import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed, textOf } from "./settings.js";
+import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed, quoted, textOf } from "./settings.js";
 
 export function encodeRun({ seed, params, actions }) {
   const fields = new URLSearchParams({ seed });
@@ -17,7 +17,7 @@ export function decodeRun(hash) {
   const known = ["seed", "dynamics", "actions", ...PARAMETERS.map(({ name }) => name)];
   const unknown = [...fields.keys()].find((name) => !known.includes(name));
   if (unknown !== undefined) {
-    throw new Error(`names in the link must be ${known.join(", ")}, got "${unknown}"`);
+    throw new Error(`names in the link must be ${known.join(", ")}, got ${quoted(unknown)}`);
   }
   const params = { ...DEFAULTS };
   for (const { name } of PARAMETERS) {
@@ -25,13 +25,8 @@ export function decodeRun(hash) {
   }
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
   const actions = fields.get("actions") ?? "";
-  const wrong = /[^012]/u.exec(actions);
-  if (wrong) {
-    const got = `'${wrong[0]}' as character ${wrong.index + 1}`;
-    throw new Error(`actions must be 0, 1 or 2, got ${got}`);
-  }
-  if (actions.length > LIMIT) {
-    throw new Error(`actions must be at most ${LIMIT}, got ${actions.length}`);
+  if (!/^[012]*$/.test(actions) || actions.length > LIMIT) {
+    throw new Error(`actions must be at most ${LIMIT} of 0, 1 and 2, got ${quoted(actions)}`);
   }
   const seed = parseSeed(fields.get("seed") ?? "42");
   return { seed, params, actions: Array.from(actions, Number) };

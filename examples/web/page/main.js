@@ -53,16 +53,15 @@ function start() {
   };
 
   const step = () => {
-    let next;
     try {
-      next = action();
+      const next = action();
+      if (next === undefined) {
+        return pause("The replay has ended. Press Restart, or an arrow and Play.");
+      }
+      game.step(next);
     } catch (error) {
       return pause(minus(error.message)); // With extreme physics an energy is infinite.
     }
-    if (next === undefined) {
-      return pause("The replay has ended. Press Restart, or an arrow and Play.");
-    }
-    game.step(next);
     players.add($("policy").value);
     shown = 0;
     if (game.end === null) return;
@@ -90,7 +89,6 @@ function start() {
   };
   /** Puts the run into the address, so that loading the page again begins it. */
   const address = (actions = $("policy").value === "link" ? recorded : []) =>
-    // Assigning to `location` would replay the run.
     history.replaceState(null, "", encodeRun({ ...game, actions }));
 
   const reset = () => {
@@ -147,16 +145,16 @@ function start() {
     if (!Number.isFinite(value)) return "too large";
     return minus(Math.abs(value) < 1e6 ? value.toFixed(digits) : value.toPrecision(4));
   };
-  /** Draws a plot of columns, and a caption with their last values and further parts. */
-  const show = (id, title, names, unit, columns, options, ...more) => {
-    const kinds = ["first", "second"];
+  /** Draws a plot of columns, and a caption with their last values and `more` HTML. */
+  const show = (id, title, names, unit, columns, options, more = "") => {
     const colors = [color("--accent"), color("--second")];
     const series = columns.map((values, i) => ({ values, color: colors[i] }));
     plot($(id), { series, end: Math.max(game.steps, 50), unit: "steps", ...options });
-    const last = (column, i) => [`${names[i]} ${number(column.at(-1))} ${unit}`, kinds[i]];
-    const parts = [[title, ""], ...columns.map(last), ...more];
-    const spans = parts.map(([text, kind]) => `<span class="${kind}">${text}</span>`);
-    $(`${id}-caption`).innerHTML = spans.join("");
+    const last = columns.map((column, i) => {
+      const text = `${names[i]} ${number(column.at(-1))} ${unit}`;
+      return `<span class="${["first", "second"][i]}">${text}</span>`;
+    });
+    $(`${id}-caption`).innerHTML = `<span>${title}</span>${last.join("")}${more}`;
   };
 
   const plots = () => {
@@ -164,11 +162,11 @@ function start() {
     const [energy, heights] = columns.slice(4);
     const [angles, velocities] = [columns.slice(0, 2), columns.slice(2, 4)];
     const standing = uprightEnergy(game.acrobot.params);
-    const upright = [`upright: ${number(standing)} J`, "hint"];
-    const height = [`tip height ${number(heights.at(-1))} m`, ""];
+    const more = `<span class="hint">upright: ${number(standing)} J</span>
+      <span>tip height ${number(heights.at(-1))} m</span>`;
     const range = rangeOf([...energy, standing, -standing]);
     const marks = [[standing, color("--muted")]];
-    show("energy", "Energy", [""], "J", [energy], { range, marks }, upright, height);
+    show("energy", "Energy", [""], "J", [energy], { range, marks }, more);
     const turn = { range: [-Math.PI, Math.PI], period: 2 * Math.PI };
     show("angles", "Angles", ["θ1", "θ2"], "rad", angles, turn);
     const fastest = 1.06 * Math.max(2, ...velocities.flat().map(Math.abs));
@@ -353,12 +351,12 @@ function start() {
   };
   $("csv").onclick = () => download(`acrobot-${name(game.seed)}.csv`, game.csv());
 
-  const option = document.querySelector("[value=learnt]");
   const training = trainingPanel(learner, {
     ready(policy) {
       learnt = policy;
       // Those of the policy before.
       for (const key of best.keys()) if (key.startsWith('["learnt"')) best.delete(key);
+      const option = document.querySelector("[value=learnt]");
       option.disabled = false;
       option.textContent = "Learnt";
     },

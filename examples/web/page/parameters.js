@@ -2,7 +2,7 @@
 // field shows why a value is rejected.
 
 import { minus } from "./plot.js";
-import { DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
+import { DEFAULTS, PARAMETERS, parseNumber, quoted, textOf } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -39,7 +39,7 @@ export function parametersPanel(get, set) {
       const value = parseNumber(text.value);
       const isNew = !Object.is(value, get()[name]);
       attempt(text, reason, () => isNew && set({ ...get(), [name]: value }));
-      const given = text.value.trim() || "an empty text";
+      const given = quoted(text.value.trim());
       reason.textContent = reason.textContent.replace(/(NaN|−?Infinity)$/, () => given);
     };
     slider.oninput = () => (text.value = slider.value);

@@ -20,15 +20,13 @@ export const DEFAULTS = {
   ...Object.fromEntries(PARAMETERS.map(({ name, value }) => [name, value])),
 };
 
+/** A text in an error message. */
+export const quoted = (text) => (text === "" ? "an empty text" : `"${text}"`);
+
 /** The seed in a text. Throws an `Error` with the reason if the text is not a seed. */
 export function parseSeed(text) {
-  const digits = text.trim();
-  const rule = "seed must be a decimal integer of at least 0 with at most 600 digits";
-  if (digits === "") throw new Error(`${rule}, got an empty text`);
-  const wrong = /[^0-9]/u.exec(digits);
-  if (wrong) throw new Error(`${rule}, got '${wrong[0]}' as character ${wrong.index + 1}`);
-  if (digits.length > 600) throw new Error(`${rule}, got ${digits.length} digits`);
-  return BigInt(digits);
+  if (/^[0-9]{1,600}$/.test(text.trim())) return BigInt(text);
+  throw new Error(`seed must have from 1 to 600 decimal digits, got ${quoted(text.trim())}`);
 }
 
 /** A number as text, which has the sign of a zero. */

@@ -9,7 +9,7 @@ import { Acrobot } from "../dist/acrobot-rs/index.js";
 import { Learner } from "../dist/acrobot-rs/policies.js";
 import { Game, shortest } from "../dist/game.js";
 import { decodeRun, encodeRun } from "../dist/link.js";
-import { rangeOf, ticks } from "../dist/plot.js";
+import { ticks } from "../dist/plot.js";
 import { DEFAULTS } from "../dist/settings.js";
 import { BASELINE } from "../dist/training.js";
 import { ACTIONS } from "./native.mjs";
@@ -18,11 +18,6 @@ test("numbers are written with the fewest digits that keep single precision", ()
   for (const text of ["0", "-0", "0.1", "-0.054791212", "3.1415927", "1e-7", "16777216"]) {
     assert.equal(shortest(Math.fround(Number(text))), text);
   }
-});
-
-test("a plot can show the longest training", () => {
-  const [low, high] = rangeOf(Array.from({ length: 1_000_000 }, (_, i) => -(i % 501)));
-  assert.deepEqual([low, high], [-530, 30]);
 });
 
 test("a plot has a scale, whatever its range", () => {
@@ -90,12 +85,11 @@ test("the trail is where the tip was at equal times", () => {
 
 test("an invalid link is rejected with the reason", () => {
   for (const [bad, message] of [
-    ["#seed=4&actions=13", /^actions must be 0, 1 or 2, got '3' as character 2$/],
-    [`#seed=4&actions=${"1".repeat(501)}`, /^actions must be at most 500, got 501$/],
-    ["#seed=", /^seed must be .*, got an empty text$/],
-    [`#seed=${"9".repeat(601)}`, /^seed must be .*, got 601 digits$/],
+    ["#seed=4&actions=13", /^actions must be at most 500 of 0, 1 and 2, got "13"$/],
+    [`#seed=4&actions=${"1".repeat(501)}`, /^actions must be at most 500 .*, got "1{501}"$/],
+    ["#seed=", /^seed must have from 1 to 600 decimal digits, got an empty text$/],
+    [`#seed=${"9".repeat(601)}`, /^seed must have .*, got "9{601}"$/],
     ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
-    ["#seed=💥", /^seed must be .*, got '💥' as character 1$/],
   ]) {
     assert.throws(() => decodeRun(bad), { message });
   }
