@@ -124,28 +124,53 @@ test("random actions with a seed are Gymnasium's", () => {
   assert.notDeepEqual(Batch.restore(snapshot).sample(), Batch.restore(snapshot).sample());
 });
 
-/** A context that records the names of the methods called. */
+/** A context that records calls, with the colour of each. */
 function canvas() {
-  const target = { calls: [], canvas: { width: 300, height: 200 }, arc() {} };
-  return new Proxy(target, {
-    get: (target, name) => target[name] ?? (() => target.calls.push(name)),
-  });
+  const target = { calls: [], canvas: { width: 300, height: 200 } };
+  const record = (name) => (...given) => {
+    const style = name.startsWith("fill") ? "fillStyle" : "strokeStyle";
+    target.calls.push([name, target[style], ...given].join(" "));
+  };
+  return new Proxy(target, { get: (target, name) => target[name] ?? record(name) });
 }
+
+test("a picture has an arrow with the torque of the last step, and options", () => {
+  const [acrobot, batch] = [new Acrobot(), new Batch({ count: 2 })];
+  const drawn = (draw) => {
+    const context = canvas();
+    draw(context);
+    return context.calls;
+  };
+  /** The arrow's width, which is negative for a torque to the right. */
+  const arrow = () => {
+    const scales = drawn((context) => acrobot.draw(context)).filter((call) => /^scale/.test(call));
+    return scales.slice(1).map((call) => Number(call.split(" ")[2]));
+  };
+  for (const [action, widths] of [[2, [0.3]], [1, []], [0, [-0.3]]]) {
+    acrobot.step(action);
+    assert.deepEqual(arrow(), widths);
+  }
+  acrobot.stepTorque(0.5);
+  assert.deepEqual(arrow(), [0.3]);
+  acrobot.reset();
+  assert.deepEqual(arrow(), []);
+  assert.ok(drawn((context) => acrobot.draw(context)).includes("fillRect white 0 0 200 200"));
+  const options = { size: 50, colors: { background: "red", link: "blue" } };
+  const calls = drawn((context) => batch.draw(context, 1, options));
+  assert.ok(calls.includes("fillRect red 0 0 50 50") && calls.includes("stroke blue"));
+});
 
 test("invalid arguments of draw are rejected, and nothing is drawn", () => {
   const [batch, acrobot, context] = [new Batch({ count: 1 }), new Acrobot(), canvas()];
-  const draw = (...given) => () => acrobot.draw(...given);
+  const draw = (options) => () => acrobot.draw(context, options);
   const SIZE = "options.size must be finite and at least 0 pixels";
   const NAMES = "background, target, link, joint, torque";
   assertRejected([
-    ["TypeError", "context must be a canvas's 2D context", ["undefined", draw()]],
-    ["TypeError", "options must be among size, colors", ["sise", draw(context, { sise: 1 })]],
-    ["RangeError", SIZE, ["-1", draw(context, { size: -1 })], ["NaN", draw({ arc() {} })]],
-    ["TypeError", SIZE, ['"100"', draw(context, { size: "100" })]],
-    ["TypeError", `options.colors must be among ${NAMES}`,
-      ["lnik", draw(context, { colors: { lnik: "" } })]],
-    ["TypeError", "options.colors.link must be a string",
-      ["5", draw(context, { colors: { link: 5 } })]],
+    ["TypeError", "context must be a canvas's 2D context", ["undefined", () => acrobot.draw()]],
+    ["TypeError", "options must be among size, colors", ["sise", draw({ sise: 1 })]],
+    ["RangeError", SIZE, ["-1", draw({ size: -1 })], ["NaN", () => acrobot.draw({ arc() {} })]],
+    ["TypeError", `options.colors must be among ${NAMES}`, ["lnik", draw({ colors: { lnik: "" } })]],
+    ["TypeError", "options.colors.link must be a string", ["5", draw({ colors: { link: 5 } })]],
     ["TypeError", "index must be an integer from 0 to 0",
       ["[object Object]", () => batch.draw(context, {})]],
   ]);

@@ -197,67 +197,26 @@ test("the page of the documentation draws episodes without a bundler", async () 
   await open(html, moves);
 });
 
-test("a picture is Gymnasium's, with the torque of the last step", async () => {
+test("a picture is Gymnasium's", async () => {
   cpSync(join(root, "tests/data/frames.png"), join(folder, "frames.png"));
-  const canvas = '<canvas id="canvas" width="500" height="500"></canvas>';
-  await open(`${canvas}<img id="frames" src="frames.png">`, async (page) => {
-    const found = await page.evaluate(async () => {
-      const { Acrobot, Batch } = await import("/node_modules/acrobot-rs/index.js");
+  const canvas = '<canvas width="500" height="500"></canvas>';
+  await open(`${canvas}<img src="frames.png">`, async (page) => {
+    const close = await page.evaluate(async () => {
+      const { Acrobot } = await import("/node_modules/acrobot-rs/index.js");
       const [canvas, frames] = document.querySelectorAll("canvas, img");
       const context = canvas.getContext("2d", { willReadFrequently: true });
-      /** Red, green, blue and opacity of each pixel. */
-      const pixels = (side = 500) => {
-        const { data } = context.getImageData(0, 0, side, side);
-        return Array.from({ length: side ** 2 }, (_, i) => data.slice(4 * i, 4 * i + 4));
-      };
+      const colors = () => [...context.getImageData(0, 0, 500, 500).data];
       const acrobot = new Acrobot();
       // The seventh row of tests/data/frames.txt. Its frame is the seventh of the first row.
       const [theta1, theta2] = [0.6289501539883458, 1.4360881438650939];
       acrobot.state = { theta1, theta2, dtheta1: 0, dtheta2: 0 };
       acrobot.draw(context);
-      const drawn = pixels();
+      const drawn = colors();
       await frames.decode();
       context.drawImage(frames, -3000, 0);
-      const isClose = (pixel, i) => pixel.every((x, j) => Math.abs(x - drawn[i][j]) <= 32);
-      const close = pixels().filter(isClose).length / drawn.length;
-
-      /**
-       * The side of the elbow on which most pixels in the torque's colour are: the arrow's head is
-       * there. 0 without an arrow.
-       */
-      const head = () => {
-        const elbow = 250 + (250 / 2.2) * Math.sin(acrobot.state.theta1);
-        const sides = pixels().map((pixel, i) => {
-          return pixel.join() === "204,0,0,255" ? Math.sign((i % 500) - elbow) : 0;
-        });
-        return Math.sign(sides.reduce((sum, side) => sum + side));
-      };
-      const heads = [2, 1, 0, 2].map((action, i) => {
-        acrobot.state = { theta1: 0.6, theta2: -1.5, dtheta1: 0, dtheta2: 0 };
-        acrobot.step(action);
-        if (i === 3) acrobot.reset();
-        acrobot.draw(context);
-        return head();
-      });
-
-      // A batch's picture in a corner, in other colours.
-      const batch = new Batch({ count: 2, seed: 1 });
-      const single = new Acrobot({ seed: 1n + (1n << 128n) });
-      const options = { size: 100, colors: { link: "#010203", background: "transparent" } };
-      context.fillStyle = "#040506";
-      const corner = (draw) => {
-        context.fillRect(0, 0, 500, 500);
-        draw();
-        return pixels(101).join(" ");
-      };
-      const own = corner(() => batch.draw(context, 1, options));
-      const isSame = own === corner(() => single.draw(context, options));
-      const colors = [own.includes("1,2,3,255"), own.endsWith("4,5,6,255")];
-      return { close, heads, batch: [isSame, ...colors] };
+      return colors().filter((color, i) => Math.abs(color - drawn[i]) <= 32).length / drawn.length;
     });
-    assert.ok(found.close > 0.99, `${found.close} of the pixels are close`);
-    assert.deepEqual(found.heads, [-1, 0, 1, 0]);
-    assert.deepEqual(found.batch, [true, true, true]);
+    assert.ok(close > 0.99, `${close} of the colors are close`);
   });
 });
 
