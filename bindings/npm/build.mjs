@@ -46,6 +46,8 @@ function compile(library) {
   return readFileSync(out);
 }
 
+const ESM = { absWorkingDir: process.cwd(), bundle: true, format: "esm" };
+
 /** Writes a file of the package with its module inside: a browser loads it with one request. */
 function bundle(entry, library) {
   const module = compile(library);
@@ -57,12 +59,11 @@ function bundle(entry, library) {
   buildSync({
     entryPoints: [`package/${entry}.js`],
     outfile: `dist/${entry}.js`,
-    bundle: true,
-    format: "esm",
+    ...ESM,
     target: "es2022",
-    // Names stay, for messages and debuggers.
     minifyWhitespace: true,
     minifySyntax: true,
+    alias: { "tiny-inflate": "./target/inflate.js" },
     define: { LENGTH: `${module.length}`, MODULE: `"${deflated}"`, EXPORTS: `"${names}"` },
   });
   // For CommonJS: a file that loads the same module, and the types, which ES modules can import.
@@ -74,6 +75,8 @@ function bundle(entry, library) {
 
 rmSync("dist", { recursive: true, force: true });
 mkdirSync("dist");
+// Names of the package stay, for messages and debuggers; those of the decompressor become short.
+buildSync({ entryPoints: ["tiny-inflate"], minify: true, outfile: "target/inflate.js", ...ESM });
 bundle("index", "acrobot_npm");
 bundle("policies", "acrobot_learner");
 // npm shows what users need to know.

@@ -64,7 +64,7 @@ export interface Params {
   torques: readonly [number, number, number];
   /** Bound of a uniform draw that each step adds to its torque, N m; 0 or more. Default: 0. */
   torqueNoise: number;
-  /** The equations of the book or of the NIPS paper: Gymnasium's `book_or_nips`. Default: "book". */
+  /** Equations of the book or of the NIPS paper: Gymnasium's `book_or_nips`. Default: "book". */
   dynamics: "book" | "nips";
   /** Friction of the fixed joint in a swing-up, N m s/rad; 0 or more. Default: 0. */
   friction1: number;
