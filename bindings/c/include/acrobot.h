@@ -1,15 +1,15 @@
 // Gymnasium's Acrobot in C and C++: one or a batch, in single precision.
 //
-// - You provide the memory, and may reuse it at any time. No function allocates.
-// - No function aborts or has global state. One that can fail returns an acrobot_status_t. Unless
-//   it is ACROBOT_OK, acrobots and results are unchanged, if its comment says nothing else.
+// - You provide the memory, and may reuse it at any time. No function allocates, aborts or has
+//   global state. Threads and interrupts may use different acrobots at the same time.
+// - Unless the status is ACROBOT_OK, acrobots and results are unchanged.
 // - A pointer must be null or point to what its type says. `error`, and the `observation` of a
 //   reset, may be null. The functions report null, misaligned pointers and zeroed memory, but not
 //   freed memory.
 // - Arguments, and arrays of a struct, must not overlap. The functions report arrays that overlap,
 //   and a result or error that would overwrite the acrobot or the batch.
 // - Arrays have `count` elements, one for each acrobot, and `index` counts from 0.
-// - Threads and interrupts may use different acrobots at the same time. Sharing one takes a lock.
+// - Numbers are in SI units.
 
 
 #ifndef ACROBOT_H
@@ -30,7 +30,7 @@
 #endif
 #endif
 
-// The bytes of memory that a batch of `count` acrobots takes, as a constant of type size_t.
+// Bytes of a batch of `count` acrobots, as a constant of type size_t.
 #if UINTPTR_MAX > 0xFFFFFFFF
 #define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * 48 + ((size_t)(count) + 15) / 16 * 640)
 #else
@@ -65,34 +65,33 @@
 // Its logarithm uniformly; `low` is above 0.
 #define ACROBOT_DRAW_LOG_UNIFORM 3
 
-// From a normal distribution with this `mean` and standard deviation, above 0, truncated at `low`
-// and `high`. `mean` is between these.
+// From a normal distribution truncated at `low` and `high`. `mean` is between these, and the
+// standard deviation above 0.
 #define ACROBOT_DRAW_NORMAL 4
 
-// The bytes of an acrobot_t: the most that any target needs.
+// Bytes of an acrobot_t.
 #define ACROBOT_SIZE 240
 
-// The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
+// Its alignment. malloc may align less, on microcontrollers to 8 bytes.
 #define ACROBOT_ALIGN 16
 
-// The bytes of an acrobot_action_space_t.
+// Bytes of an acrobot_action_space_t.
 #define ACROBOT_ACTION_SPACE_SIZE 64
 
-// The alignment of the memory for a batch, bytes.
+// Alignment of a batch's memory.
 #define ACROBOT_BATCH_ALIGN 64
 
-// Acrobots whose episode has ended are reset in the next step, which ignores its action and
-// returns the initial observation and a reward of 0. The default.
+// The default: the step after an episode's end resets the acrobot. It ignores the action and
+// returns the initial observation and a reward of 0.
 #define ACROBOT_AUTORESET_NEXT_STEP 0
 
-// They are reset in the step that ends the episode. It returns the initial observation of the next
-// episode, and the last one of the ended episode in `final_observations`.
+// The step that ends an episode resets the acrobot. It returns the initial observation, and the
+// last one in `final_observations`.
 #define ACROBOT_AUTORESET_SAME_STEP 1
 
-// They step on until acrobot_batch_reset_masked or another reset.
+// The acrobots step on until acrobot_batch_reset_masked or another reset.
 #define ACROBOT_AUTORESET_DISABLED 2
 
-// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 typedef enum {
   ACROBOT_OK = 0,
   // A pointer is null that must not be.
@@ -114,18 +113,17 @@ typedef enum {
   ACROBOT_ERROR_OVERLAP = 10,
 } acrobot_status_t;
 
-// A batch of acrobots in the memory of acrobot_batch_init. It contains pointers into this memory,
-// so do not move or copy it.
+// Acrobots in the memory of acrobot_batch_init. It contains pointers into this memory, so do not
+// move or copy it.
 typedef struct acrobot_batch_t acrobot_batch_t;
 
-// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Call acrobot_init first. It contains
-// no pointer: you may copy and move it.
+// One acrobot: Gymnasium's `Acrobot-v1`. Call acrobot_init first. You may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_SIZE];
 } acrobot_t;
 
-// An observation, six floats without padding: the cosine and sine of each angle of the
-// acrobot_state_t, and its angular velocities, rad/s.
+// Cosine and sine of each angle of the acrobot_state_t, and its angular velocities, rad/s; six
+// floats without padding.
 typedef struct {
   float cos_theta1;
   float sin_theta1;
@@ -135,16 +133,15 @@ typedef struct {
   float dtheta2;
 } acrobot_observation_t;
 
-// Why a number was rejected, for ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end with a
-// zero byte: `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
+// Why a number is out of range, as UTF-8:
+// `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
 typedef struct {
-  // The value that was rejected, in `unit`.
   double value;
-  // The field or argument: `"dt"`.
+  // `"dt"`
   char name[24];
-  // Its SI unit: `"s"`.
+  // `"s"`
   char unit[16];
-  // The rule, with the unit: `"finite and above 0 s"`.
+  // `"finite and above 0 s"`
   char rule[64];
 } acrobot_error_t;
 
@@ -153,7 +150,7 @@ typedef struct {
   acrobot_observation_t observation;
   // −1, or 0 if `terminated`.
   float reward;
-  // Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
+  // Whether −cos θ1 − cos(θ1 + θ2) > 1: the goal.
   bool terminated;
   // Whether the time limit is reached: 500 steps by default.
   bool truncated;
@@ -171,7 +168,7 @@ typedef struct {
   float dtheta2;
 } acrobot_state_t;
 
-// Parameters, in SI units. To change one, read all with acrobot_params, and set them.
+// To change one parameter, read all with acrobot_params, and set them.
 typedef struct {
   // Length of link 1, m; above 0. Default 1.
   float length1;
@@ -207,7 +204,7 @@ typedef struct {
   int dynamics;
 } acrobot_params_t;
 
-// How a parameter is drawn, in its unit.
+// How a parameter is drawn.
 typedef struct {
   // One of the ACROBOT_DRAW numbers.
   int kind;
@@ -244,14 +241,13 @@ typedef struct ACROBOT_ALIGNED(16) {
 typedef struct {
   // −1, or 0 if the acrobot terminated or was only reset.
   float *rewards;
-  // Whether the new state is a goal state.
+  // As in acrobot_step_t.
   bool *terminated;
-  // Whether the time limit is reached.
   bool *truncated;
-  // The observations of the new states; null if you do not need them.
+  // Of the new states; null if you do not need them.
   acrobot_observation_t *observations;
-  // With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step
-  // ended; other elements are not written. Null if you do not need them.
+  // With ACROBOT_AUTORESET_SAME_STEP, those of the episodes that this step ended; other elements
+  // are not written. Null if you do not need them.
   acrobot_observation_t *final_observations;
 } acrobot_batch_results_t;
 
@@ -259,69 +255,66 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// The text of a status, in English, also of an unknown one. It is constant: do not free it.
+// The text of any status. It is constant: do not free it.
 const char *acrobot_status_text(int status);
 
-// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`.
+// Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
 acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
 
-// Draws the next initial state and begins an episode.
+// Begins an episode in a drawn initial state.
 acrobot_status_t acrobot_reset(acrobot_t *acrobot, acrobot_observation_t *observation);
 
-// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode.
+// As acrobot_reset after seeding: Gymnasium's `reset(seed=seed)`.
 acrobot_status_t acrobot_reset_with_seed(acrobot_t *acrobot,
-                                         uint64_t seed,
-                                         acrobot_observation_t *observation);
+    uint64_t seed,
+    acrobot_observation_t *observation);
 
 // As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
 // rad/s; −0.1 and 0.1 by default. Both must be finite as float, and `low` at most `high`.
 acrobot_status_t acrobot_reset_within(acrobot_t *acrobot,
-                                      double low,
-                                      double high,
-                                      acrobot_observation_t *observation,
-                                      acrobot_error_t *error);
+    double low,
+    double high,
+    acrobot_observation_t *observation,
+    acrobot_error_t *error);
 
-// Applies the torque of an action, one of the ACROBOT_ACTION numbers, for one dt. When the episode
-// has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
+// Applies the torque of an ACROBOT_ACTION for one dt. After the end of an episode call
+// acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 acrobot_status_t acrobot_step(acrobot_t *acrobot, int action, acrobot_step_t *step);
 
 // Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it.
 acrobot_status_t acrobot_step_torque(acrobot_t *acrobot,
-                                     float torque,
-                                     acrobot_step_t *step,
-                                     acrobot_error_t *error);
+    float torque,
+    acrobot_step_t *step,
+    acrobot_error_t *error);
 
-// The observation of the state.
 acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t *observation);
 
-// The number of steps since the last reset.
+// Steps since the last reset.
 acrobot_status_t acrobot_elapsed_steps(const acrobot_t *acrobot, uint32_t *steps);
 
-// Sets the number of steps after which episodes are truncated, above 0; 500 by default.
+// Episodes are truncated after so many steps, above 0; 500 by default.
 acrobot_status_t acrobot_set_max_steps(acrobot_t *acrobot,
-                                       uint32_t max_steps,
-                                       acrobot_error_t *error);
+    uint32_t max_steps,
+    acrobot_error_t *error);
 
-// The state.
 acrobot_status_t acrobot_state(const acrobot_t *acrobot, acrobot_state_t *state);
 
-// Sets the state. The number of steps does not change.
+// The number of steps stays.
 acrobot_status_t acrobot_set_state(acrobot_t *acrobot,
-                                   const acrobot_state_t *state,
-                                   acrobot_error_t *error);
+    const acrobot_state_t *state,
+    acrobot_error_t *error);
 
-// The parameters.
 acrobot_status_t acrobot_params(const acrobot_t *acrobot, acrobot_params_t *params);
 
-// Sets the parameters for the next steps. The state does not change.
+// Sets the parameters of the next steps. The state stays.
 acrobot_status_t acrobot_set_params(acrobot_t *acrobot,
-                                    const acrobot_params_t *params,
-                                    acrobot_error_t *error);
+    const acrobot_params_t *params,
+    acrobot_error_t *error);
 
-// Draws parameters for the next steps from the acrobot's generator: call it after a reset.
+// Draws parameters from the acrobot's generator: call it after a reset.
 acrobot_status_t acrobot_draw_params(acrobot_t *acrobot,
-                                     const acrobot_draws_t *draws,
-                                     acrobot_error_t *error);
+    const acrobot_draws_t *draws,
+    acrobot_error_t *error);
 
 // The total energy of the state, J.
 acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
@@ -331,23 +324,22 @@ acrobot_status_t acrobot_tip_height(const acrobot_t *acrobot, float *height);
 
 // The deviation of the state from a finite `target`, with angles wrapped to ±π.
 acrobot_status_t acrobot_deviation(const acrobot_t *acrobot,
-                                   const acrobot_state_t *target,
-                                   acrobot_state_t *deviation);
+    const acrobot_state_t *target,
+    acrobot_state_t *deviation);
 
-// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at
-// `target`. The torque in each dt is −gain · x for a deviation x, a sum of four products; clamp it
-// to that of your motor.
+// The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque in a dt
+// is −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
 //
 // `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
 // accelerations of at most 0.01 rad/s². `q` has the weights of the four squared deviations, 0 or
-// more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)². If no
-// regulator exists, for example without gravity, the status is ACROBOT_ERROR_OUT_OF_RANGE.
+// more, in 1/rad² and s²/rad², and `r` that of the squared torque, above 0, in 1/(N m)². Where no
+// regulator exists, `error` names the `gain`.
 acrobot_status_t acrobot_lqr(acrobot_t *acrobot,
-                             const acrobot_state_t *target,
-                             const acrobot_state_t *q,
-                             float r,
-                             acrobot_state_t *gain,
-                             acrobot_error_t *error);
+    const acrobot_state_t *target,
+    const acrobot_state_t *q,
+    float r,
+    acrobot_state_t *gain,
+    acrobot_error_t *error);
 
 // Gymnasium's `action_space.seed(seed)`.
 acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space, uint64_t seed);
@@ -355,32 +347,29 @@ acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space,
 // Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
 acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_space, uint8_t *action);
 
-// The bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
+// ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
 size_t acrobot_batch_size(size_t count);
 
-// Makes a batch of `count` acrobots in `memory`, which has `size` bytes, with the default
-// parameters and in initial states. Acrobot `i` is seeded with NumPy's
-// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address, and must not point
-// into its bytes.
+// Makes a batch in `memory`, which has `size` bytes, with default parameters, in initial states.
+// Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`. `batch` receives the
+// batch's address.
 acrobot_status_t acrobot_batch_init(void *memory,
-                                    size_t size,
-                                    size_t count,
-                                    uint64_t seed,
-                                    acrobot_batch_t **batch);
+    size_t size,
+    size_t count,
+    uint64_t seed,
+    acrobot_batch_t **batch);
 
 // Applies an action to each acrobot for one dt. If one is rejected, no acrobot steps, but
 // `terminated` and `truncated` become false.
 acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch,
-                                    const uint8_t *actions,
-                                    const acrobot_batch_results_t *results,
-                                    size_t count);
+    const uint8_t *actions,
+    const acrobot_batch_results_t *results,
+    size_t count);
 
-// Writes the observations of the states.
 acrobot_status_t acrobot_batch_observe(const acrobot_batch_t *batch,
-                                       acrobot_observation_t *observations,
-                                       size_t count);
+    acrobot_observation_t *observations,
+    size_t count);
 
-// The number of acrobots.
 acrobot_status_t acrobot_batch_count(const acrobot_batch_t *batch, size_t *count);
 
 // As acrobot_reset, for each acrobot.
@@ -391,41 +380,38 @@ acrobot_status_t acrobot_batch_reset_with_seed(acrobot_batch_t *batch, uint64_t 
 
 // As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.
 acrobot_status_t acrobot_batch_reset_with_seeds(acrobot_batch_t *batch,
-                                                const uint64_t *seeds,
-                                                size_t count);
+    const uint64_t *seeds,
+    size_t count);
 
-// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. For a byte that is
-// neither true nor false it returns ACROBOT_ERROR_OUT_OF_RANGE.
+// As acrobot_batch_reset, where `mask` is true. A byte that is neither true nor false is rejected.
 acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch, const bool *mask, size_t count);
 
-// Sets when acrobots are reset whose episode has ended: one of the ACROBOT_AUTORESET numbers.
+// When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
 acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
-                                             int autoreset,
-                                             acrobot_error_t *error);
+    int autoreset,
+    acrobot_error_t *error);
 
 // As acrobot_set_max_steps, for all acrobots.
 acrobot_status_t acrobot_batch_set_max_steps(acrobot_batch_t *batch,
-                                             uint32_t max_steps,
-                                             acrobot_error_t *error);
+    uint32_t max_steps,
+    acrobot_error_t *error);
 
-// The state of acrobot `index`.
 acrobot_status_t acrobot_batch_state_of(const acrobot_batch_t *batch,
-                                        size_t index,
-                                        acrobot_state_t *state);
+    size_t index,
+    acrobot_state_t *state);
 
-// Sets the state of acrobot `index`. Its number of steps does not change.
+// The number of its steps stays.
 acrobot_status_t acrobot_batch_set_state_of(acrobot_batch_t *batch,
-                                            size_t index,
-                                            const acrobot_state_t *state,
-                                            acrobot_error_t *error);
+    size_t index,
+    const acrobot_state_t *state,
+    acrobot_error_t *error);
 
-// The parameters of all acrobots.
 acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch, acrobot_params_t *params);
 
 // As acrobot_set_params, for all acrobots.
 acrobot_status_t acrobot_batch_set_params(acrobot_batch_t *batch,
-                                          const acrobot_params_t *params,
-                                          acrobot_error_t *error);
+    const acrobot_params_t *params,
+    acrobot_error_t *error);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -8,7 +8,7 @@ use acrobot::numpy::Pcg64;
 use crate::memory::{Holder, change, check};
 use crate::status::{acrobot_status_t, status};
 
-/// The bytes of an acrobot_action_space_t.
+/// Bytes of an acrobot_action_space_t.
 pub const ACROBOT_ACTION_SPACE_SIZE: usize = 64;
 
 /// Draws random actions: Gymnasium's `action_space`. You may copy and move it.

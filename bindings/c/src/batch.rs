@@ -13,7 +13,7 @@ use crate::memory::{Holder, Span, array, change, check, check_apart, get, option
 use crate::single::check_max_steps;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
-/// The alignment of the memory for a batch, bytes.
+/// Alignment of a batch's memory.
 pub const ACROBOT_BATCH_ALIGN: usize = 64;
 
 // cbindgen.toml has these numbers, too: ACROBOT_BATCH_SIZE.
@@ -23,19 +23,19 @@ const GENERATOR: usize = 48;
 const LANES: usize = if usize::BITS == 64 { 16 } else { 1 };
 const BLOCK: usize = if usize::BITS == 64 { 640 } else { 64 };
 
-/// Acrobots whose episode has ended are reset in the next step, which ignores its action and
-/// returns the initial observation and a reward of 0. The default.
+/// The default: the step after an episode's end resets the acrobot. It ignores the action and
+/// returns the initial observation and a reward of 0.
 pub const ACROBOT_AUTORESET_NEXT_STEP: c_int = 0;
 
-/// They are reset in the step that ends the episode. It returns the initial observation of the next
-/// episode, and the last one of the ended episode in `final_observations`.
+/// The step that ends an episode resets the acrobot. It returns the initial observation, and the
+/// last one in `final_observations`.
 pub const ACROBOT_AUTORESET_SAME_STEP: c_int = 1;
 
-/// They step on until acrobot_batch_reset_masked or another reset.
+/// The acrobots step on until acrobot_batch_reset_masked or another reset.
 pub const ACROBOT_AUTORESET_DISABLED: c_int = 2;
 
-/// A batch of acrobots in the memory of acrobot_batch_init. It contains pointers into this memory,
-/// so do not move or copy it.
+/// Acrobots in the memory of acrobot_batch_init. It contains pointers into this memory, so do not
+/// move or copy it.
 #[repr(align(64))]
 pub struct acrobot_batch_t {
     _header: [u8; HEADER],
@@ -47,14 +47,13 @@ pub struct acrobot_batch_t {
 pub struct acrobot_batch_results_t {
     /// −1, or 0 if the acrobot terminated or was only reset.
     pub rewards: *mut f32,
-    /// Whether the new state is a goal state.
+    /// As in acrobot_step_t.
     pub terminated: *mut bool,
-    /// Whether the time limit is reached.
     pub truncated: *mut bool,
-    /// The observations of the new states; null if you do not need them.
+    /// Of the new states; null if you do not need them.
     pub observations: *mut acrobot_observation_t,
-    /// With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step
-    /// ended; other elements are not written. Null if you do not need them.
+    /// With ACROBOT_AUTORESET_SAME_STEP, those of the episodes that this step ended; other elements
+    /// are not written. Null if you do not need them.
     pub final_observations: *mut acrobot_observation_t,
 }
 
@@ -89,16 +88,20 @@ const _: () = {
     assert!(align_of::<[f32; 6]>() == align_of::<acrobot_observation_t>());
 };
 
-/// Rejects an array that does not have one element for each acrobot.
-fn check_count(placed: &Placed, count: usize) -> Result<(), Rejected> {
-    if placed.batch.len() == count { Ok(()) } else { Err(ACROBOT_ERROR_WRONG_COUNT.into()) }
+/// The batch, if arrays of `count` elements have one for each acrobot.
+unsafe fn counted<'a>(
+    batch: *const acrobot_batch_t,
+    count: usize,
+) -> Result<&'a mut Placed, Rejected> {
+    let placed = Holder::value_mut(batch.cast_mut())?;
+    if placed.batch.len() == count { Ok(placed) } else { Err(ACROBOT_ERROR_WRONG_COUNT.into()) }
 }
 
 fn memory_of(batch: *const acrobot_batch_t, count: usize) -> Span {
     Span::new(batch.cast::<u8>(), acrobot_batch_size(count))
 }
 
-/// The bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
+/// ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
     let blocks = count.div_ceil(LANES);
@@ -108,10 +111,9 @@ pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
         .saturating_add(HEADER)
 }
 
-/// Makes a batch of `count` acrobots in `memory`, which has `size` bytes, with the default
-/// parameters and in initial states. Acrobot `i` is seeded with NumPy's
-/// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address, and must not point
-/// into its bytes.
+/// Makes a batch in `memory`, which has `size` bytes, with default parameters, in initial states.
+/// Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`. `batch` receives the
+/// batch's address.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_init(
     memory: *mut c_void,
@@ -159,8 +161,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
     count: usize,
 ) -> acrobot_status_t {
     status(|| {
-        let placed = Holder::value_mut(batch)?;
-        check_count(placed, count)?;
+        let placed = counted(batch, count)?;
         let pointers = Span::new(results, 1);
         let results = read(results)?;
         let actions = array(actions.cast_mut(), count)?;
@@ -190,7 +191,6 @@ pub unsafe extern "C" fn acrobot_batch_step(
     })
 }
 
-/// Writes the observations of the states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_observe(
     batch: *const acrobot_batch_t,
@@ -198,15 +198,13 @@ pub unsafe extern "C" fn acrobot_batch_observe(
     count: usize,
 ) -> acrobot_status_t {
     status(|| {
-        let placed = Holder::value(batch)?;
-        check_count(placed, count)?;
+        let placed = counted(batch, count)?;
         let observations = array(observations.cast(), count)?;
         check_apart(&[memory_of(batch, count), Span::of(observations)])?;
         Ok(placed.batch.observe(&mut *observations)?)
     })
 }
 
-/// The number of acrobots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_count(
     batch: *const acrobot_batch_t,
@@ -218,10 +216,7 @@ pub unsafe extern "C" fn acrobot_batch_count(
 /// As acrobot_reset, for each acrobot.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset(batch: *mut acrobot_batch_t) -> acrobot_status_t {
-    status(|| {
-        Holder::value_mut(batch)?.batch.reset();
-        Ok(())
-    })
+    change(batch, ptr::null_mut(), ptr::null_mut(), |placed| Ok(placed.batch.reset()))
 }
 
 /// As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
@@ -230,10 +225,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     batch: *mut acrobot_batch_t,
     seed: u64,
 ) -> acrobot_status_t {
-    status(|| {
-        Holder::value_mut(batch)?.batch.reset_with_seed(seed);
-        Ok(())
-    })
+    change(batch, ptr::null_mut(), ptr::null_mut(), |placed| Ok(placed.batch.reset_with_seed(seed)))
 }
 
 /// As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.
@@ -244,8 +236,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seeds(
     count: usize,
 ) -> acrobot_status_t {
     status(|| {
-        let placed = Holder::value_mut(batch)?;
-        check_count(placed, count)?;
+        let placed = counted(batch, count)?;
         let seeds = array(seeds.cast_mut(), count)?;
         check_apart(&[memory_of(batch, count), Span::of(seeds)])?;
         for (generator, seed) in placed.batch.generators_mut().iter_mut().zip(&*seeds) {
@@ -256,8 +247,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seeds(
     })
 }
 
-/// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. For a byte that is
-/// neither true nor false it returns ACROBOT_ERROR_OUT_OF_RANGE.
+/// As acrobot_batch_reset, where `mask` is true. A byte that is neither true nor false is rejected.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset_masked(
     batch: *mut acrobot_batch_t,
@@ -265,8 +255,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
     count: usize,
 ) -> acrobot_status_t {
     status(|| {
-        let placed = Holder::value_mut(batch)?;
-        check_count(placed, count)?;
+        let placed = counted(batch, count)?;
         let bytes = array(mask.cast::<u8>().cast_mut(), count)?;
         check_apart(&[memory_of(batch, count), Span::of(bytes)])?;
         if (*bytes).iter().any(|byte| *byte > 1) {
@@ -277,7 +266,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
     })
 }
 
-/// Sets when acrobots are reset whose episode has ended: one of the ACROBOT_AUTORESET numbers.
+/// When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     batch: *mut acrobot_batch_t,
@@ -308,7 +297,6 @@ pub unsafe extern "C" fn acrobot_batch_set_max_steps(
     })
 }
 
-/// The state of acrobot `index`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_state_of(
     batch: *const acrobot_batch_t,
@@ -321,7 +309,7 @@ pub unsafe extern "C" fn acrobot_batch_state_of(
     })
 }
 
-/// Sets the state of acrobot `index`. Its number of steps does not change.
+/// The number of its steps stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_state_of(
     batch: *mut acrobot_batch_t,
@@ -334,7 +322,6 @@ pub unsafe extern "C" fn acrobot_batch_set_state_of(
     })
 }
 
-/// The parameters of all acrobots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_params(
     batch: *const acrobot_batch_t,

@@ -1,4 +1,4 @@
-//! What a controller needs: the deviation from a state, and a regulator.
+//! A linear-quadratic regulator.
 
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, State};
@@ -22,14 +22,13 @@ pub unsafe extern "C" fn acrobot_deviation(
     })
 }
 
-/// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at
-/// `target`. The torque in each dt is −gain · x for a deviation x, a sum of four products; clamp it
-/// to that of your motor.
+/// The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque in a dt
+/// is −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
 ///
 /// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
 /// accelerations of at most 0.01 rad/s². `q` has the weights of the four squared deviations, 0 or
-/// more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)². If no
-/// regulator exists, for example without gravity, the status is ACROBOT_ERROR_OUT_OF_RANGE.
+/// more, in 1/rad² and s²/rad², and `r` that of the squared torque, above 0, in 1/(N m)². Where no
+/// regulator exists, `error` names the `gain`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_lqr(
     acrobot: *mut acrobot_t,

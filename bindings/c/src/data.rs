@@ -1,9 +1,10 @@
 //! The structs that pass data.
 
-use core::convert::identity;
+use core::array::from_fn;
 use core::ffi::c_int;
+use core::mem::transmute;
 
-use acrobot::physics::{Dynamics, Viscous};
+use acrobot::physics::Dynamics;
 use acrobot::task::{Draw, Draws};
 use acrobot::{Params, State, Step};
 
@@ -24,8 +25,8 @@ pub const ACROBOT_DYNAMICS_BOOK: c_int = 0;
 /// The equations of Sutton's paper of 1996 (NIPS 8), which do not conserve energy.
 pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
-/// An observation, six floats without padding: the cosine and sine of each angle of the
-/// acrobot_state_t, and its angular velocities, rad/s.
+/// Cosine and sine of each angle of the acrobot_state_t, and its angular velocities, rad/s; six
+/// floats without padding.
 #[repr(C)]
 pub struct acrobot_observation_t {
     pub cos_theta1: f32,
@@ -48,7 +49,7 @@ pub struct acrobot_step_t {
     pub observation: acrobot_observation_t,
     /// −1, or 0 if `terminated`.
     pub reward: f32,
-    /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
+    /// Whether −cos θ1 − cos(θ1 + θ2) > 1: the goal.
     pub terminated: bool,
     /// Whether the time limit is reached: 500 steps by default.
     pub truncated: bool,
@@ -92,7 +93,7 @@ impl From<acrobot_state_t> for State<f32> {
     }
 }
 
-/// Parameters, in SI units. To change one, read all with acrobot_params, and set them.
+/// To change one parameter, read all with acrobot_params, and set them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_params_t {
@@ -142,11 +143,11 @@ pub const ACROBOT_DRAW_UNIFORM: c_int = 2;
 /// Its logarithm uniformly; `low` is above 0.
 pub const ACROBOT_DRAW_LOG_UNIFORM: c_int = 3;
 
-/// From a normal distribution with this `mean` and standard deviation, above 0, truncated at `low`
-/// and `high`. `mean` is between these.
+/// From a normal distribution truncated at `low` and `high`. `mean` is between these, and the
+/// standard deviation above 0.
 pub const ACROBOT_DRAW_NORMAL: c_int = 4;
 
-/// How a parameter is drawn, in its unit.
+/// How a parameter is drawn.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_draw_t {
@@ -178,35 +179,32 @@ pub struct acrobot_draws_t {
     pub torque_noise: acrobot_draw_t,
 }
 
-/// A struct of another type with the same fields, converted by a function.
-macro_rules! same_fields {
-    ($type:ident, $from:ident, $convert:expr, $($others:tt)*) => {
-        $type {
-            length1: $convert($from.length1),
-            length2: $convert($from.length2),
-            mass1: $convert($from.mass1),
-            mass2: $convert($from.mass2),
-            center_of_mass1: $convert($from.center_of_mass1),
-            center_of_mass2: $convert($from.center_of_mass2),
-            inertia1: $convert($from.inertia1),
-            inertia2: $convert($from.inertia2),
-            gravity: $convert($from.gravity),
-            dt: $convert($from.dt),
-            max_velocity1: $convert($from.max_velocity1),
-            max_velocity2: $convert($from.max_velocity2),
-            torques: $from.torques.map(&mut $convert),
-            torque_noise: $convert($from.torque_noise),
-            $($others)*
-        }
-    };
+/// The numbers of [`acrobot_params_t`] and [`acrobot_draws_t`]. Their order is that of
+/// [`Params::numbers`], where the friction, which C does not have, follows.
+const NUMBERS: usize = 16;
+
+/// [`acrobot_params_t`] without names.
+#[repr(C)]
+struct Fields {
+    numbers: [f32; NUMBERS],
+    dynamics: c_int,
+}
+
+/// Sets the numbers that C has.
+fn set<T: Copy>(params: &mut Params<T>, numbers: [T; NUMBERS]) {
+    for (to, number) in params.numbers_mut().into_iter().zip(numbers) {
+        *to = number;
+    }
 }
 
 impl TryFrom<acrobot_draws_t> for Draws<f32> {
     type Error = Rejected;
 
     fn try_from(draws: acrobot_draws_t) -> Result<Self, Rejected> {
+        // SAFETY: both are `repr(C)` and have so many draws.
+        let draws: [acrobot_draw_t; NUMBERS] = unsafe { transmute(draws) };
         let mut unknown = None;
-        let mut convert = |draw: acrobot_draw_t| {
+        let draws = draws.map(|draw| {
             let acrobot_draw_t { kind, low, high, mean, standard_deviation: std } = draw;
             match kind {
                 ACROBOT_DRAW_FIXED => Draw::Fixed,
@@ -219,22 +217,25 @@ impl TryFrom<acrobot_draws_t> for Draws<f32> {
                     Draw::Fixed
                 }
             }
-        };
-        let draws = same_fields!(Params, draws, convert, ..Draws::FIXED);
-        match unknown {
-            Some(kind) => Err(Rejected::number("kind", kind.into(), "", "from 0 to 4")),
-            None => Ok(Self::new(draws)?),
+        });
+        if let Some(kind) = unknown {
+            return Err(Rejected::number("kind", kind.into(), "", "from 0 to 4"));
         }
+        let mut params = Draws::FIXED;
+        set(&mut params, draws);
+        Ok(Self::new(params)?)
     }
 }
 
 impl From<Params<f32>> for acrobot_params_t {
     fn from(params: Params<f32>) -> Self {
+        let numbers = params.numbers();
         let dynamics = match params.dynamics {
             Dynamics::Nips => ACROBOT_DYNAMICS_NIPS,
             _ => ACROBOT_DYNAMICS_BOOK,
         };
-        same_fields!(acrobot_params_t, params, identity, dynamics)
+        // SAFETY: both are `repr(C)` and have so many numbers before the dynamics.
+        unsafe { transmute(Fields { numbers: from_fn(|i| numbers[i].1), dynamics }) }
     }
 }
 
@@ -243,7 +244,9 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
 
     /// Rejects unknown dynamics only.
     fn try_from(params: acrobot_params_t) -> Result<Self, Rejected> {
-        let dynamics = match params.dynamics {
+        // SAFETY: as above.
+        let Fields { numbers, dynamics } = unsafe { transmute(params) };
+        let dynamics = match dynamics {
             ACROBOT_DYNAMICS_BOOK => Dynamics::Book,
             ACROBOT_DYNAMICS_NIPS => Dynamics::Nips,
             other => {
@@ -251,6 +254,8 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
                 return Err(Rejected::number("dynamics", other.into(), "", rule));
             }
         };
-        Ok(same_fields!(Params, params, identity, dynamics, friction: Viscous::default()))
+        let mut params = Self { dynamics, ..Self::default() };
+        set(&mut params, numbers);
+        Ok(params)
     }
 }

