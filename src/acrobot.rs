@@ -265,7 +265,7 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
     }
 
     /// An acrobot with the parameters and the state of `pendulum`, which [`Params::pendulum`] makes
-    /// [in a `const`](crate::guide::embedded).
+    /// [in a `const`](crate::guide::embedded_topics).
     #[must_use]
     pub const fn from_pendulum(pendulum: Pendulum<A>, rng: R) -> Self {
         Self { pendulum, rng, task: T::DEFAULT }

@@ -11,11 +11,8 @@ pub mod rust {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/balance.txt")]
-#[cfg_attr(
-    any(not(doctest), all(feature = "graphics", feature = "serde")),
-    doc = include_str!("../docs/embedded.md")
-)]
-pub mod embedded {}
+#[cfg_attr(any(not(doctest), feature = "serde"), doc = include_str!("../docs/embedded-topics.md"))]
+pub mod embedded_topics {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[cfg_attr(any(not(doctest), feature = "alloc"), doc = include_str!("../docs/tasks.md"))]
@@ -35,6 +32,7 @@ macro_rules! pages {
 }
 
 pages! {
+    embedded "embedded.md",
     embedded_figures "embedded-figures.md",
     c "c.md",
     wasm "wasm.md",

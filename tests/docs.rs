@@ -22,7 +22,7 @@ fn the_figures_of_the_readme_are_those_of_the_pages() {
 
 #[test]
 fn the_figures_of_the_firmware_guide_are_those_of_its_page() {
-    let guide = text_of("docs/embedded.md");
+    let guide = text_of("docs/embedded-topics.md");
     let (_, section) = guide.split_once("## Which arithmetic").unwrap();
     let (section, _) = section.split_once("\n## ").unwrap();
     assert_numbers_are_in(section, "docs/embedded-figures.md");

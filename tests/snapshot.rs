@@ -188,7 +188,7 @@ fn no_snapshot_is_larger_than_its_constant() {
     check::<Damped<Reference>>();
 }
 
-/// The figures of `docs/embedded.md`: without a checksum most snapshots with a flipped bit load as
+/// The figures of `docs/embedded-topics.md`: without a checksum most snapshots with a flipped bit load as
 /// another acrobot.
 #[test]
 fn a_checksum_finds_every_flipped_bit() {

@@ -61,7 +61,7 @@ impl Folder {
     }
 }
 
-/// The pictures of the README and of docs/embedded.md.
+/// The pictures of the README and of docs/embedded-topics.md.
 #[test]
 fn pictures_are_those_of_the_pages() {
     let folder = Folder::new("pictures");
