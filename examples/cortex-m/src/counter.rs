@@ -8,14 +8,12 @@ use riscv::register::minstret;
 #[cfg(target_arch = "arm")]
 use semihosting::process;
 
-/// SysTick, with its frequency in MHz. It counts down from 2²⁴ − 1, longer than any measurement
-/// takes.
+/// SysTick, with its frequency in MHz. It counts down from 2²⁴ − 1.
 #[cfg(target_arch = "arm")]
 pub struct Counter(SYST, u64);
 
 #[cfg(target_arch = "arm")]
 impl Counter {
-    /// Ends the program if the peripherals are in use.
     pub fn take() -> Self {
         let Some(mut peripherals) = Peripherals::take() else { process::exit(1) };
         peripherals.SYST.set_clock_source(SystClkSource::Core);
@@ -41,7 +39,7 @@ impl Counter {
     }
 }
 
-/// The value of the register `minstret` when counting started.
+/// The instructions before counting.
 #[cfg(target_arch = "riscv32")]
 pub struct Counter(u64);
 

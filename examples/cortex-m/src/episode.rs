@@ -1,7 +1,5 @@
-//! The policy of the programs that play one episode, and how they end.
-//!
-//! `#[inline]` compiles them in these programs alone. Otherwise the flash of `minimal` changes by 8
-//! bytes.
+//! The policy of the programs that play one episode, and how they end. Without `#[inline]` the
+//! flash of `minimal` would change.
 
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Step, TimeLimit};

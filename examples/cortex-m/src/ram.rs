@@ -2,8 +2,7 @@
 
 use cortex_m_rt::{STACK_PAINT_VALUE, heap_start};
 
-/// Bytes of RAM in use. The start-up code paints the RAM, so a word that is still painted was never
-/// written.
+/// Bytes of RAM in use. The start-up code paints the RAM.
 pub fn used() -> usize {
     unsafe extern "C" {
         static _ram_start: u32;

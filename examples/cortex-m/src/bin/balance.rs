@@ -1,13 +1,12 @@
 //! Swings the acrobot up and holds it upright, at 100 Hz: SysTick's interrupt decides on the
 //! torque, and steps the acrobot, which stands for the machine. A random torque disturbs each tick.
-//! It begins with 5 initial states; 1,000 follow without waiting for the clock, and 100 with each
+//! It begins in 5 initial states; 1,000 follow without waiting for the clock, and 100 with each
 //! weaker motor, that of 1 N m at 50 Hz.
 //!
 //! For each motor it plans once, from hanging at rest, with less torque than the motor has. Each
 //! acrobot follows the plan, and then a regulator holds it. One that falls swings up without a
-//! plan. Prints one figure a line, `torque figure value`, with `in_time` as the torque for the
-//! first 5; `figures.py` explains each. It fails if a tick misses its deadline, and if the first
-//! plan is not bit-identical to that of a desktop.
+//! plan. It fails if a tick misses its deadline, and if the first plan is not bit-identical to that
+//! of a desktop.
 
 #![no_std]
 #![no_main]
@@ -27,11 +26,10 @@ use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
 use semihosting::{println, process};
 
-/// SysTick counts per second: the core's clock, 25 MHz on QEMU's mps2-an386.
+/// Counts per second of SysTick: the clock of QEMU's mps2-an386.
 const CLOCK: u32 = 25_000_000;
 /// Ticks per second.
 const RATE: u32 = plan::RATE;
-/// Counts from one tick to the next.
 const PERIOD: u32 = CLOCK / RATE;
 /// Instructions per count under QEMU's `-icount shift=0`.
 const PER_COUNT: u32 = 1_000_000_000 / CLOCK;
@@ -158,8 +156,7 @@ fn main() -> ! {
     process::exit(if passed { 0 } else { 1 })
 }
 
-/// Plans for a motor. Prints the time that the plan takes, rounded up, and the instructions that
-/// planning took.
+/// Prints the time that the plan takes, rounded up, and the instructions that planning took.
 fn make_plan(motor: Motor) {
     /// The first timer of QEMU's mps2-an386: control and value. It counts the core's clock down.
     const TIMER: *mut u32 = 0x4000_0000 as *mut u32;
@@ -180,8 +177,7 @@ fn make_plan(motor: Motor) {
     println!("{} plan_millions {}", motor.name, instructions / 1_000_000);
 }
 
-/// Plays episodes with a motor. Prints the figures, times and errors rounded up, and returns how
-/// many acrobots were not caught.
+/// Prints the figures, times and errors rounded up, and returns how many acrobots were not caught.
 fn run(next_tick: fn(), motor: Motor, name: &str, episodes: u32) -> Result<u32, ControlError> {
     let rate = motor.rate;
     let params = Params { torque_noise: DISTURBANCE, ..plan::params(rate) };

@@ -1,5 +1,5 @@
-//! Counts instructions. Prints one figure a line, `arithmetic figure value`, the same in every run.
-//! Then it compares the bits of `Reference` and `Portable` with the crate's tests.
+//! Counts instructions, the same in every run. Then it compares the bits of `Reference` and
+//! `Portable` with the crate's tests.
 
 #![no_std]
 #![no_main]

@@ -1,8 +1,6 @@
 //! An Embassy task owns the acrobot and steps it at a fixed rate; another task decides on each
-//! action.
-//!
-//! It fails if the ticks come at another rate on average, and if the episode does not end as in a
-//! plain loop.
+//! action. It fails if the ticks come at another rate on average, and if the episode does not end
+//! as in a plain loop.
 
 #![no_std]
 #![no_main]
@@ -19,8 +17,7 @@ use embassy_time::{Duration, Instant, Ticker};
 use semihosting::{println, process};
 use systick_timer::SystickDriver;
 
-/// A hundredth of the 0.2 s that a step simulates. With 0.2 s QEMU would run for minutes: its WFE
-/// does not sleep.
+/// With 0.2 s, the time of a step, QEMU would run for minutes: its WFE does not sleep.
 const PERIOD: Duration = Duration::from_millis(2);
 
 // Embassy's clock, for one ticker, from the core's 25 MHz on QEMU's mps2-an386. On a board the HAL
@@ -37,8 +34,7 @@ fn SysTick() {
     CLOCK.systick_interrupt();
 }
 
-/// Steps the acrobot, which stands for the machine. No other task can reach it, so it needs no
-/// mutex.
+/// Steps the acrobot, which stands for the machine.
 #[embassy_executor::task]
 async fn machine(mut acrobot: TimeLimit<Acrobot<Fast>>) {
     let mut action = Action::Positive;

@@ -1,7 +1,6 @@
 //! Firmware whose flash `figures.py` measures: an acrobot that is seeded, then stepped and reset
-//! forever. `MINIMAL` chooses its arithmetic, or what else is in it, when it is built:
-//! `MINIMAL=reference cargo build --release --bin minimal`. Its flash minus that of the firmware
-//! without an acrobot, which is built without `MINIMAL`, is the flash of the crate.
+//! forever. `MINIMAL` chooses its arithmetic, or what else is in it, when it is built. Without it
+//! there is no acrobot.
 
 #![no_std]
 #![no_main]
@@ -109,8 +108,7 @@ impl fmt::Write for Output {
     }
 }
 
-/// A pendulum alone, without random numbers. In a `static` it needs no code that makes or copies
-/// it.
+/// A pendulum alone. In a `static` it needs no code that makes or copies it.
 fn pendulum() -> ! {
     static mut PENDULUM: Pendulum<Fast> = Pendulum::hanging();
     let pendulum = &raw mut PENDULUM;

@@ -46,18 +46,14 @@ fn main() -> ! {
     let mean = panel.borrow().received / frames;
     let equal = !failed && drawn.is_ok() && (frames, digest.0) == (oled::FRAMES, oled::DIGEST);
     println!("{frames} frames; bytes on the bus: {first} for the first, {mean} on average");
-    if !equal {
-        let (expected, found) = (oled::FRAMES, digest.0);
-        println!("the frames differ: expected {expected}, got digest {found:#018x}");
-    }
+    println!("as on a desktop: {equal}");
     process::exit(if equal { 0 } else { 1 })
 }
 
-/// An SSD1306's memory, eight rows at a time, and the window of it that received bytes are written
-/// to, from the left.
+/// An SSD1306's memory, eight rows at a time.
 struct Panel {
     memory: [[u8; 128]; 8],
-    /// First and last column of the window.
+    /// First and last column of the window that received bytes fill.
     columns: [u8; 2],
     /// The position of the next byte.
     column: u8,

@@ -1,7 +1,5 @@
 //! Plays a policy that was trained in Python. Compares its actions on 10,000 observations with
 //! those that torch computed.
-//!
-//! It prints figures in the format of `bench`: `fast figure value`.
 
 #![no_std]
 #![no_main]

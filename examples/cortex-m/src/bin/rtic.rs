@@ -1,8 +1,6 @@
 //! An RTIC app. SysTick's task owns the acrobot and steps it five times a second; a task of lower
-//! priority decides on the next action.
-//!
-//! It fails if the episode does not end as in a plain loop, for instance because a decision came
-//! too late.
+//! priority decides on the next action. It fails if the episode does not end as in a plain loop,
+//! for instance because a decision came too late.
 
 #![no_std]
 #![no_main]

@@ -1,6 +1,5 @@
-//! Prints the instructions and the stack of an environment step and the size of an acrobot, with
-//! each arithmetic, one figure a line: `arithmetic figure value`. It builds for each target of the
-//! tables of cores in `docs/embedded-figures.md`.
+//! Prints the instructions and the stack of a step and the size of an acrobot, with each
+//! arithmetic. It builds for each core of `figures.py`.
 
 #![no_std]
 #![no_main]
