@@ -8,20 +8,15 @@ impl Folder {
     }
 
     /// The figures of the line that `--quiet` prints: the episode that solved the task, if any, the
-    /// greedy policy's mean and standard deviation, and its misses. Checks the form of the line.
+    /// greedy policy's mean and standard deviation, and its misses.
     fn figures(&self, arguments: &str) -> [Option<f64>; 4] {
         let line = self.swing_up(&format!("--quiet {arguments}"));
         let words: Vec<&str> = line.split_whitespace().collect();
-        let [solved, rest @ ..]: [Option<f64>; 4] = [1, 3, 5, 7].map(|i| words[i].parse().ok());
-        let solved_at = solved.map_or("never".into(), |n| n.to_string());
-        let [mean, sd, misses] = rest.map(Option::unwrap);
         assert_eq!(
-            line,
-            format!(
-                "solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses:.0}\n"
-            )
+            [0, 2, 4, 6].map(|i| words[i]),
+            ["solved_at", "greedy_mean", "greedy_sd", "misses"]
         );
-        [solved, Some(mean), Some(sd), Some(misses)]
+        [1, 3, 5, 7].map(|i| words[i].parse().ok())
     }
 }
 
@@ -98,16 +93,4 @@ fn swing_up_evaluates_during_a_budget_of_steps() {
     // Evaluations change nothing.
     let alone = folder.swing_up("--quiet --steps 7000 --seed 1");
     assert_eq!(lines[3], alone.trim_end());
-}
-
-/// The learner's own tests damage every byte.
-#[test]
-fn swing_up_rejects_weights_of_another_learner() {
-    let folder = Folder::new("weights");
-    folder.swing_up("--quiet --episodes 3 --save weights");
-    for (memory, bytes) in [("16k", 11284), ("32k", 23572)] {
-        let line = format!("swing_up --load weights --save out --memory {memory}");
-        folder.assert_rejects(&line, &format!("weights must have {bytes} bytes, got 49172"));
-        assert!(!folder.path("out").exists());
-    }
 }

@@ -168,12 +168,10 @@ fn train<const S: usize, const T: usize>(
     let mut env = training(options.seed.clone());
     let (Budget::Episodes(length) | Budget::Steps(length)) = options.budget();
     let bar = if options.quiet { ProgressBar::hidden() } else { ProgressBar::new(length.into()) };
-    let style = ProgressStyle::with_template("{msg}{elapsed} {wide_bar} {pos}/{len}");
+    let style = ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} mean return {msg}");
     bar.set_style(style.expect("a valid template"));
 
-    // A hundred charts in all, because drawing one takes as long as several steps.
-    let period = length.div_ceil(100).max(1);
-    let (mut returns, mut steps, mut done, mut charted) = (Vec::new(), 0, 0, 0);
+    let (mut returns, mut steps, mut done) = (Vec::new(), 0, 0);
     while done < length {
         returns.push(learner.learn(&mut env));
         let before = steps;
@@ -189,9 +187,8 @@ fn train<const S: usize, const T: usize>(
                 evaluate(&options.seed, 0..EVALUATION, |state| learner.greedy(state));
             println!("steps {steps} greedy_mean {mean:.2}");
         }
-        if !bar.is_hidden() && done / period > charted {
-            charted = done / period;
-            bar.set_message(curve::chart(&returns));
+        if !bar.is_hidden() {
+            bar.set_message(format!("{:.0}", curve::running_mean(&returns)));
         }
         bar.set_position(done.min(length).into());
     }
