@@ -216,7 +216,10 @@ pub unsafe extern "C" fn acrobot_batch_count(
 /// As acrobot_reset, for each acrobot.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset(batch: *mut acrobot_batch_t) -> acrobot_status_t {
-    change(batch, ptr::null_mut(), ptr::null_mut(), |placed| Ok(placed.batch.reset()))
+    status(|| {
+        Holder::value_mut(batch)?.batch.reset();
+        Ok(())
+    })
 }
 
 /// As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
@@ -225,7 +228,10 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     batch: *mut acrobot_batch_t,
     seed: u64,
 ) -> acrobot_status_t {
-    change(batch, ptr::null_mut(), ptr::null_mut(), |placed| Ok(placed.batch.reset_with_seed(seed)))
+    status(|| {
+        Holder::value_mut(batch)?.batch.reset_with_seed(seed);
+        Ok(())
+    })
 }
 
 /// As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.

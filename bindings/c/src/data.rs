@@ -245,7 +245,7 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
     /// Rejects unknown dynamics only.
     fn try_from(params: acrobot_params_t) -> Result<Self, Rejected> {
         // SAFETY: as above.
-        let Fields { numbers, dynamics } = unsafe { transmute(params) };
+        let Fields { numbers, dynamics } = unsafe { transmute::<acrobot_params_t, Fields>(params) };
         let dynamics = match dynamics {
             ACROBOT_DYNAMICS_BOOK => Dynamics::Book,
             ACROBOT_DYNAMICS_NIPS => Dynamics::Nips,
