@@ -188,8 +188,8 @@ fn no_snapshot_is_larger_than_its_constant() {
     check::<Damped<Reference>>();
 }
 
-/// The figures of `docs/embedded-topics.md`: without a checksum most snapshots with a flipped bit load as
-/// another acrobot.
+/// The figures of `docs/embedded-topics.md`: without a checksum most snapshots with a flipped bit
+/// load as another acrobot.
 #[test]
 fn a_checksum_finds_every_flipped_bit() {
     static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);

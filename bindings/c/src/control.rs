@@ -22,8 +22,8 @@ pub unsafe extern "C" fn acrobot_deviation(
     })
 }
 
-/// The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque in a dt
-/// is −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
+/// The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque is
+/// −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
 ///
 /// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
 /// accelerations of at most 0.01 rad/s². `q` has the weights of the four squared deviations, 0 or
