@@ -45,7 +45,7 @@ fn panic(_: &PanicInfo) -> ! {
 fn main() -> ! {
     loop {
         all_of::<Fast, Gymnasium>();
-        all_of::<Micro, Gymnasium>();
+        pendulum::<Micro>(); // differs from `Fast` in its sines alone
         all_of::<Portable, Gymnasium>();
         all_of::<Reference, Gymnasium>();
         all_of::<Damped<Fast>, Swingup>();
