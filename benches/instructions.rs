@@ -36,7 +36,7 @@ fn limit(instructions: f64, acrobots: usize) -> LibraryBenchmarkConfig {
 fn alone<A: Arithmetic>() -> (TimeLimit<Acrobot<A>>, Vec<Action>) {
     let mut rng = Pcg64::new(0);
     let actions = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
-    (TimeLimit::v1(Acrobot::new(0)), actions)
+    (TimeLimit::of(Acrobot::new(0)), actions)
 }
 
 fn batch<A: Arithmetic>(level: SimdLevel) -> Play<A> {

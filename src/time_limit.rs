@@ -9,7 +9,7 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::physics::{Params, State};
-use crate::task::{Gymnasium, ResetOptions, Task, episode};
+use crate::task::{ResetOptions, Task, episode};
 
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` from the
 /// limit on.
@@ -17,7 +17,7 @@ use crate::task::{Gymnasium, ResetOptions, Task, episode};
 /// ```
 /// use acrobot::{Acrobot, Action, Fast, TimeLimit};
 ///
-/// let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42));
+/// let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(42));
 /// let mut length = 1;
 /// while !acrobot.step(Action::Zero).done() {
 ///     length += 1;
@@ -85,15 +85,6 @@ impl<E> TimeLimit<E> {
     }
 }
 
-impl<A: Arithmetic, R> TimeLimit<Acrobot<A, Gymnasium, R>> {
-    /// Truncates episodes after 500 steps, as `Acrobot-v1` does. [`of`](Self::of) has the limit of
-    /// any task.
-    #[must_use]
-    pub const fn v1(inner: Acrobot<A, Gymnasium, R>) -> Self {
-        Self::of(inner)
-    }
-}
-
 impl<A: Arithmetic, T: Task> TimeLimit<Acrobot<A, T>> {
     /// As [`Acrobot::MAX_SNAPSHOT_SIZE`], with limit and count.
     #[cfg(feature = "serde")]
@@ -113,7 +104,7 @@ impl<A: Arithmetic, T: Task> TimeLimit<Acrobot<A, T>> {
 }
 
 impl<A: Arithmetic, T: Task, R> TimeLimit<Acrobot<A, T, R>> {
-    /// Truncates episodes after the steps that [the task has](Task::MAX_STEPS).
+    /// Truncates episodes after the steps that [the task has](Task::MAX_STEPS): 500 in Gymnasium's.
     #[must_use]
     pub const fn of(inner: Acrobot<A, T, R>) -> Self {
         Self::new(inner, T::MAX_STEPS)

@@ -5,7 +5,7 @@
 //! use acrobot::{Acrobot, Action, Fast, TimeLimit};
 //! use core::fmt::Write;
 //!
-//! let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42));
+//! let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(42));
 //! let mut trajectory = Trajectory::<f32, 100>::new();
 //! for action in Action::ALL {
 //!     trajectory.step(&mut acrobot, action); // acrobot.step(action), recorded

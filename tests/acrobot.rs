@@ -76,7 +76,7 @@ fn time_limits_truncate_whether_or_not_an_episode_terminates() {
         assert!(acrobot.step(Action::Zero).truncated, "the count goes on");
         assert_eq!(acrobot.elapsed_steps(), 3);
     }
-    check(TimeLimit::v1(Acrobot::new(1)), 500);
+    check(TimeLimit::of(Acrobot::<Fast>::new(1)), 500);
     check(TimeLimit::of(Acrobot::<Fast, GymnasiumV0>::new(1)), 200);
 }
 
@@ -98,8 +98,8 @@ fn acrobots_are_equal_by_parameters_state_and_generator() {
 
 #[test]
 fn reset_with_takes_a_seed_and_bounds() {
-    let new = TimeLimit::v1(Acrobot::<Fast>::new(7));
-    let mut acrobot = TimeLimit::v1(Acrobot::new(0));
+    let new = TimeLimit::of(Acrobot::<Fast>::new(7));
+    let mut acrobot = TimeLimit::of(Acrobot::new(0));
     let resets: [fn(&mut TimeLimit<Acrobot<Fast>>) -> _; 3] = [
         |acrobot| acrobot.reset_with_seed(7),
         |acrobot| acrobot.reset_with(7.into()),

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use acrobot::{Error, Params};
 use common::{absolute, text_of};
 
 /// Each number of the README's table stands in the page that its row links to.
@@ -41,6 +42,84 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split([' ', '\n', '|']).map(|word| {
         word.trim_start_matches(['-', '−']).trim_end_matches(['.', ',', ';', ':', ')', '`'])
     })
+}
+
+/// Each language describes each parameter with the unit and the range that its error has.
+#[test]
+fn parameters_are_described_with_their_units_and_ranges() {
+    let mut params = Params::<f64>::DEFAULT;
+    for (place, (name, value)) in params.numbers().into_iter().enumerate() {
+        *params.numbers_mut()[place] = f64::NAN;
+        let Err(Error::OutOfRange { unit, rule, .. }) = params.validate() else {
+            panic!("{name} may be NaN");
+        };
+        *params.numbers_mut()[place] = value;
+        let range = match rule {
+            "finite and above 0" => "above 0",
+            "finite and at least 0" => "0 or more",
+            "a finite number of" => "finite",
+            _ => rule,
+        };
+        let (of, field) = name.rsplit_once('.').unwrap_or(("", name));
+        let field = field.split('[').next().unwrap();
+        let rust = if of.is_empty() { "params" } else { of };
+        check(&format!("src/physics/{rust}.rs"), &format!("pub {field}: "), unit, range);
+        if of.is_empty() {
+            check("bindings/c/src/data.rs", &format!("pub {field}: "), unit, range);
+        }
+        let camel_case = match of {
+            "" => field.replace("_of_mass", "OfMass").replace("_velocity", "Velocity"),
+            _ => field.replace("joint", of),
+        };
+        let camel_case = camel_case.replace("_noise", "Noise");
+        check("bindings/npm/package/index.d.ts", &format!("{camel_case}: "), unit, range);
+        for (file, python) in [("parameters", IN_PYTHON[place].0), ("swingup", IN_PYTHON[place].1)]
+        {
+            let file = format!("bindings/python/python/acrobot_rs/{file}.py");
+            if !python.is_empty() {
+                check(&file, &format!("{python}: "), unit, range);
+            }
+        }
+    }
+}
+
+/// Python's name of each parameter in Gymnasium's environment, and in the swing-up where it is
+/// another.
+const IN_PYTHON: [(&str, &str); 18] = [
+    ("LINK_LENGTH_1", ""),
+    ("LINK_LENGTH_2", ""),
+    ("LINK_MASS_1", ""),
+    ("LINK_MASS_2", ""),
+    ("LINK_COM_POS_1", ""),
+    ("LINK_COM_POS_2", ""),
+    ("LINK_MOI", "LINK_MOI_1"),
+    ("LINK_MOI", "LINK_MOI_2"),
+    ("gravity", ""),
+    ("dt", ""),
+    ("MAX_VEL_1", ""),
+    ("MAX_VEL_2", ""),
+    ("AVAIL_TORQUE", ""),
+    ("AVAIL_TORQUE", ""),
+    ("AVAIL_TORQUE", ""),
+    ("torque_noise_max", ""),
+    ("", "FRICTION_1"),
+    ("", "FRICTION_2"),
+];
+
+/// The comment on a declaration's line and on those above it has the unit and the range, unless it
+/// says that they are those of another parameter.
+fn check(file: &str, declaration: &str, unit: &str, range: &str) {
+    let text = text_of(file);
+    let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
+    let at = lines.iter().position(|line| line.starts_with(declaration));
+    let at = at.unwrap_or_else(|| panic!("{file} has no {declaration}"));
+    let is_comment = |line: &&&str| ["///", "/**", "#:"].iter().any(|mark| line.starts_with(mark));
+    let above = lines[..at].iter().rev().take_while(is_comment);
+    let found: Vec<&str> = above.copied().chain([lines[at]]).collect();
+    let found = found.join(" ");
+    let refers = found.contains(" As `") || found.contains("; as `");
+    let described = found.contains(unit) && found.contains(range);
+    assert!(refers || described, "{file}: {found:?} has no {unit:?} or {range:?}");
 }
 
 /// The pages name the repository's files by their paths, without links, because rustdoc shows the

@@ -126,7 +126,7 @@ fn an_arithmetic_without_friction_rejects_it() {
     let friction = Viscous { joint1: -0.0, joint2: 0.5 };
     let with = Params { friction, ..Params::DEFAULT };
     let mut pendulum = Pendulum::<Portable>::hanging();
-    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(0));
+    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(0));
     let mut batch = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
     let shared = batch.set_params(with);
     batch.own_params().unwrap();

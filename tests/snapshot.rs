@@ -18,7 +18,7 @@ type Limited = TimeLimit<Acrobot<Portable>>;
 
 /// An acrobot in the middle of an episode with noise. Its generator keeps half a draw.
 fn busy() -> Limited {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(u64::MAX));
+    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(u64::MAX));
     let inner = acrobot.inner_mut();
     inner.set_params(Params { torque_noise: 0.1, mass2: 1.5, ..Params::DEFAULT }).unwrap();
     Action::sample(inner.rng_mut());
@@ -171,7 +171,7 @@ fn every_missing_field_is_an_error() {
 #[test]
 fn no_snapshot_is_larger_than_its_constant() {
     fn check<A: Arithmetic>() {
-        let mut largest = serde_json::to_value(TimeLimit::v1(Acrobot::<A>::new(0))).unwrap();
+        let mut largest = serde_json::to_value(TimeLimit::of(Acrobot::<A>::new(0))).unwrap();
         largest["inner"]["rng"] = serde_json::json!({
             "seed": ([u32::MAX; 8]), "position": u64::MAX, "has_half": true, "half": u32::MAX
         });

@@ -64,7 +64,7 @@ fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Implementation {
 }
 
 fn fast() -> Implementation {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(0));
+    let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(0));
     alone(move |action| {
         let done = black_box(acrobot.step(Action::ALL[usize::from(action)])).done();
         if done {

@@ -36,7 +36,7 @@ const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 /// Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
-    status(|| Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))))
+    status(|| Holder::init(acrobot, TimeLimit::of(Acrobot::new(seed))))
 }
 
 /// Begins an episode in a drawn initial state.

@@ -131,7 +131,7 @@ fn any_accepted_file_decides() {
 fn the_trained_policy_swings_up() {
     let policy = Policy::<64>::new(include_bytes!("../policy.bin")).unwrap();
     let steps = [1, 2, 3, 4, 5].map(|seed| {
-        let mut env = TimeLimit::v1(Acrobot::<Fast>::new(seed));
+        let mut env = TimeLimit::of(Acrobot::<Fast>::new(seed));
         while !env.step(policy.action(&env.observation())).done() {}
         env.elapsed_steps()
     });

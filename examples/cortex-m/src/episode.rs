@@ -14,7 +14,7 @@ pub fn decide([.., dtheta1, _]: [f32; 6]) -> Action {
 /// Ends the program, with status 0 if the episode ended as in a plain loop.
 #[inline]
 pub fn finish(acrobot: &TimeLimit<Acrobot<Fast>>, step: Step) -> ! {
-    let mut expected = TimeLimit::v1(Acrobot::hanging(Pcg64::new(42)));
+    let mut expected = TimeLimit::of(Acrobot::hanging(Pcg64::new(42)));
     let mut last = expected.step(Action::Positive);
     while !last.done() {
         last = expected.step(decide(last.observation));

@@ -132,7 +132,7 @@ impl<A: Arithmetic> Snapshot for Acrobot<A> {
 
 impl<A: Arithmetic> Snapshot for TimeLimit<Acrobot<A>> {
     fn sample() -> Self {
-        let mut limited = TimeLimit::v1(Acrobot::sample());
+        let mut limited = TimeLimit::of(Acrobot::sample());
         limited.step(Action::Zero);
         limited
     }

@@ -13,7 +13,7 @@ pub fn play<D: DrawTarget<Color = BinaryColor>>(
     display: &mut D,
     mut shown: impl FnMut(&mut D),
 ) -> Result<(), D::Error> {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42));
+    let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(42));
     let mut last = Figure::new(acrobot.inner());
     last.draw(display, &Theme::MONOCHROME)?;
     shown(display);

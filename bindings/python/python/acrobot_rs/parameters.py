@@ -77,9 +77,9 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
     LINK_MOI: Each = 1.0  #: moment of inertia of each link about its centre, kg m²; 0 or more
     gravity: Each = 9.8  #: acceleration, downwards, m/s²; finite; Gymnasium's cannot change
     dt: Each = 0.2  #: duration of a step, s; above 0
-    MAX_VEL_1: Each = 4 * math.pi  #: bound of link 1's velocity after a step, rad/s; above 0
-    MAX_VEL_2: Each = 9 * math.pi  #: bound of link 2's, relative to link 1, rad/s; above 0
-    #: Torques of the actions 0, 1 and 2, N m. A single environment may have more or fewer.
+    MAX_VEL_1: Each = 4 * math.pi  #: of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38
+    MAX_VEL_2: Each = 9 * math.pi  #: of |θ̇2| after a step, rad/s; from 1.2e-38 to 3.4e38
+    #: Torques of the actions 0, 1 and 2, N m; finite. A single environment may have others.
     AVAIL_TORQUE: EachTorques = (-1.0, 0.0, 1.0)
     #: Each step adds a uniform draw within ± this to the torque, N m; 0 or more. 0 draws nothing.
     torque_noise_max: Each = 0.0

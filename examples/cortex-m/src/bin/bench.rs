@@ -40,7 +40,7 @@ type Display =
     Framebuffer<BinaryColor, RawU1, BigEndian, 128, 64, { buffer_size::<BinaryColor>(128, 64) }>;
 
 fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
-    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(42));
+    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(42));
     let mut action_space = Pcg64::new(42);
     let actions = [(); 64].map(|()| Action::sample(&mut action_space));
     let mut actions = actions.iter().copied().cycle();

@@ -67,7 +67,7 @@ async fn controller() {
 async fn main(spawner: Spawner) {
     let (Some(mut core), Ok(machine), Ok(controller)) = (
         Peripherals::take(),
-        machine(TimeLimit::v1(Acrobot::hanging(Pcg64::new(42)))),
+        machine(TimeLimit::of(Acrobot::hanging(Pcg64::new(42)))),
         controller(),
     ) else {
         process::exit(1)

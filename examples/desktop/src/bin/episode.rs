@@ -58,7 +58,7 @@ fn data_url(svg: &str) -> String {
 }
 
 fn bang_bang_episode(rng: Pcg64) -> Vec<State> {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(rng));
+    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::with_rng(rng));
     let mut states = vec![acrobot.state()];
     loop {
         let step = acrobot.step(bang_bang(acrobot.state().dtheta1));
