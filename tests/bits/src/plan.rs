@@ -1,4 +1,4 @@
-//! A plan for Gymnasium's acrobot with a strong motor, and a digest of the plan and of following it.
+//! A plan for Gymnasium's acrobot with a strong motor, and a digest of it and of following it.
 
 use acrobot::numpy::Pcg64;
 use acrobot::physics::saturate;
