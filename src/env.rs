@@ -1,6 +1,7 @@
 //! Gymnasium's interface: [`make`], environments, spaces, wrappers and render modes.
 //!
 //! ```
+//! use acrobot::Action;
 //! use acrobot::env::{Env, make};
 //! use acrobot::numpy::Pcg64;
 //!
@@ -9,7 +10,7 @@
 //! let observation = env.reset_with_seed(42);
 //! assert_eq!(observation.len(), 6);
 //! for _ in 0..1000 {
-//!     if env.step(env.action_space().sample(&mut rng)).done() {
+//!     if env.step(Action::sample(&mut rng)).done() {
 //!         env.reset();
 //!     }
 //! }
@@ -30,7 +31,7 @@ use std::vec::Vec;
 pub use error::Error;
 pub use make::{make, make_with};
 pub use rendering::{Display, RenderMode, Rendering};
-pub use space::{BoxSpace, DiscreteSpace};
+pub use space::BoxSpace;
 
 use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
@@ -102,11 +103,6 @@ pub trait Env: Send {
         self.inner_mut().step(action)
     }
 
-    /// The set of all actions.
-    fn action_space(&self) -> DiscreteSpace {
-        self.inner().action_space()
-    }
-
     /// The set of all observations.
     fn observation_space(&self) -> BoxSpace {
         self.inner().observation_space()
@@ -116,8 +112,7 @@ pub trait Env: Send {
     ///
     /// # Errors
     ///
-    /// [`Error::NoRenderMode`] if it was made without one, and [`Error::DisplayBusy`] if a
-    /// [`Display`] renders on itself.
+    /// [`Error::NoRenderMode`] if it was made without one.
     fn render(&mut self) -> Result<Rendering, Error> {
         self.inner_mut().render()
     }
@@ -235,10 +230,6 @@ impl Env for AcrobotEnv {
         let step = self.acrobot.step(action);
         self.render_mode.show(&*self.acrobot);
         step
-    }
-
-    fn action_space(&self) -> DiscreteSpace {
-        DiscreteSpace::ACTIONS
     }
 
     /// The task's [bounds](Task::observation_high).

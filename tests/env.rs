@@ -4,8 +4,7 @@ use std::sync::mpsc::{TryRecvError, channel};
 
 use acrobot::arithmetic::{Damped, Host};
 use acrobot::env::{
-    AcrobotEnv, BoxSpace, DiscreteSpace, Display, Env, Error, RenderMode, Rendering, make,
-    make_with,
+    AcrobotEnv, BoxSpace, Display, Env, Error, RenderMode, Rendering, make, make_with,
 };
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
@@ -28,7 +27,7 @@ fn make_plays_gymnasiums_runs() {
         env.reset_with(ResetOptions { seed: Some(sequence), ..ResetOptions::default() });
         let (mut found, mut ends) = (Digest::default(), 0);
         for _ in 0..1000 {
-            let step = env.step(env.action_space().sample(&mut actions));
+            let step = env.step(Action::sample(&mut actions));
             for x in &step.observation {
                 found.add(x.to_bits().into());
             }
@@ -59,7 +58,6 @@ fn versions_have_gymnasiums_spaces() {
         let space = env.observation_space();
         assert_eq!(space.high(), high);
         assert!(space.low().iter().copied().eq(high.iter().map(|x| -x)));
-        assert_eq!(env.action_space(), DiscreteSpace::ACTIONS);
 
         let slower = Params { max_velocity1: 1.0, max_velocity2: 0.05, ..Params::DEFAULT };
         env.unwrapped_mut().set_params(slower).unwrap();
@@ -110,7 +108,6 @@ fn borrowed_and_boxed_environments_are_environments() {
     env.unwrapped_mut().set_state(State::default()).unwrap();
     assert_eq!(env.unwrapped().state(), State::default());
     assert_eq!(env.observation_space().high().len(), 4);
-    assert_eq!(env.action_space(), DiscreteSpace::ACTIONS);
     assert_eq!((env.render(), frames.try_recv()), (Ok(Rendering::Shown), Ok(500)));
     env.close();
     assert_eq!(frames.try_recv(), Err(TryRecvError::Disconnected), "the display is dropped");
@@ -150,7 +147,6 @@ fn spaces_know_their_elements() {
     }
     assert!(!BoxSpace::new(vec![0.0], vec![1.0]).unwrap().contains(&[0.5, 0.5]));
     assert!(BoxSpace::new(vec![0.0], vec![1.0, 2.0]).is_none());
-    assert!(DiscreteSpace::new(&[]).is_none());
 }
 
 /// Parameters are checked before and after they are rounded to the scalar. An error names them as

@@ -34,9 +34,6 @@ pub struct Block<A: Arithmetic = Fast, const N: usize = 16> {
 impl<A: Arithmetic, const N: usize> Block<A, N> {
     const ZEROS: Lanes<A::Scalar, N> = Lanes([A::Scalar::ZERO; N]);
 
-    /// The number of acrobots in a block.
-    pub const LANES: usize = N;
-
     /// A block to create a batch with, which resets it.
     pub const EMPTY: Self = Self {
         y: [Self::ZEROS; 4],

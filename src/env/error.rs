@@ -11,8 +11,6 @@ pub enum Error {
     UnknownId(String),
     /// The environment was made without a render mode.
     NoRenderMode,
-    /// The function of a [`Display`](super::Display) renders on that display.
-    DisplayBusy,
     /// A parameter was rejected.
     Invalid(crate::error::Error),
 }
@@ -25,9 +23,6 @@ impl fmt::Display for Error {
             }
             Self::NoRenderMode => {
                 write!(f, "the render mode must be RgbArray, Ansi or Human to render, got None")
-            }
-            Self::DisplayBusy => {
-                write!(f, "the function of a display must not render on that display")
             }
             Self::Invalid(error) => error.fmt(f),
         }

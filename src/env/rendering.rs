@@ -2,10 +2,8 @@
 
 use core::fmt;
 use std::format;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::string::String;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::{self, ThreadId};
+use std::sync::Arc;
 
 use super::any_acrobot::AnyAcrobot;
 use super::error::Error;
@@ -24,43 +22,14 @@ use crate::render::{self, Frame};
 /// assert_eq!(frames.try_iter().count(), 1);
 /// ```
 #[derive(Clone)]
-pub struct Display(Arc<Shared<Show>>);
-
-type Show = dyn FnMut(&Frame) + Send;
-
-struct Shared<F: ?Sized> {
-    /// The thread that is calling `show`.
-    thread: Mutex<Option<ThreadId>>,
-    show: Mutex<F>,
-}
+pub struct Display(Arc<dyn Fn(&Frame) + Send + Sync>);
 
 impl Display {
-    /// A display that passes each frame to `show`. Clones share `show`: while one shows a frame,
-    /// other threads wait.
-    ///
-    /// If `show` uses its display itself, [`render`](super::Env::render) returns
-    /// [`Error::DisplayBusy`]. `show` must not wait for another thread that uses this display: both
-    /// would wait forever.
-    pub fn new(show: impl FnMut(&Frame) + Send + 'static) -> Self {
-        Self(Arc::new(Shared { thread: Mutex::new(None), show: Mutex::new(show) }))
+    /// A display that passes each frame to `show`. Threads that share it may call `show` at the
+    /// same time.
+    pub fn new(show: impl Fn(&Frame) + Send + Sync + 'static) -> Self {
+        Self(Arc::new(show))
     }
-
-    fn show(&self, frame: &Frame) -> Result<(), Error> {
-        let this = Some(thread::current().id());
-        if *lock(&self.0.thread) == this {
-            return Err(Error::DisplayBusy);
-        }
-        let mut show = lock(&self.0.show);
-        *lock(&self.0.thread) = this;
-        let outcome = catch_unwind(AssertUnwindSafe(|| show(frame)));
-        *lock(&self.0.thread) = None;
-        outcome.map_err(|panic| resume_unwind(panic))
-    }
-}
-
-/// Ignores poisoning, so a display that panicked can show the next frame.
-fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl fmt::Debug for Display {
@@ -87,9 +56,8 @@ pub enum RenderMode {
 impl RenderMode {
     /// Shows the acrobot if the mode is `Human`.
     pub(super) fn show(&self, acrobot: &dyn AnyAcrobot) {
-        if let Self::Human(display) = self {
-            // A reset or a step by the display's own function is not shown.
-            let _ = display.show(&Frame::of(&acrobot.figure()));
+        if let Self::Human(Display(show)) = self {
+            show(&Frame::of(&acrobot.figure()));
         }
     }
 
@@ -105,8 +73,8 @@ impl RenderMode {
                     "{drawing}\nθ1 {theta1:+.2}  θ2 {theta2:+.2} rad  θ̇1 {dtheta1:+.2}  θ̇2 {dtheta2:+.2} rad/s\n"
                 )))
             }
-            Self::Human(display) => {
-                display.show(&Frame::of(&figure))?;
+            Self::Human(Display(show)) => {
+                show(&Frame::of(&figure));
                 Ok(Rendering::Shown)
             }
         }

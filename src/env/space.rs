@@ -1,64 +1,13 @@
-//! Spaces: the sets of valid actions and observations.
-//!
-//! A space has no generator: Gymnasium's `action_space.seed(s)` is a new `Pcg64`.
+//! The space of observations. That of actions is the type [`Action`](crate::Action).
 
-use core::num::NonZeroU32;
 use std::vec::Vec;
 
 use rand_core::Rng;
 
-use crate::action::Action;
-use crate::numpy::{integers, uniform};
+use crate::numpy::uniform;
 
-/// Gymnasium's `Discrete`: actions, numbered from 0.
-///
-/// ```
-/// use acrobot::Action;
-/// use acrobot::env::DiscreteSpace;
-/// use acrobot::numpy::Pcg64;
-///
-/// let space = DiscreteSpace::new(&[Action::Negative, Action::Positive]).unwrap();
-/// assert!(space.contains(space.sample(&mut Pcg64::new(42))));
-/// assert!(!space.contains(Action::Zero));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DiscreteSpace {
-    elements: &'static [Action],
-    n: NonZeroU32,
-}
-
-impl DiscreteSpace {
-    /// Acrobot's three actions.
-    pub const ACTIONS: Self = Self { elements: &Action::ALL, n: NonZeroU32::new(3).unwrap() };
-
-    /// A space of these actions. `None` if there are none, or more than 2³² − 1.
-    #[must_use]
-    pub fn new(elements: &'static [Action]) -> Option<Self> {
-        let n = NonZeroU32::new(elements.len().try_into().ok()?)?;
-        Some(Self { elements, n })
-    }
-
-    /// The number of actions.
-    #[must_use]
-    pub fn n(&self) -> NonZeroU32 {
-        self.n
-    }
-
-    /// Whether `action` is in it.
-    #[must_use]
-    pub fn contains(&self, action: Action) -> bool {
-        self.elements.contains(&action)
-    }
-
-    /// Draws an action: Gymnasium's `sample()`, if `rng` is a [`Pcg64`](crate::numpy::Pcg64) with
-    /// the seed of the space.
-    #[expect(clippy::indexing_slicing, reason = "integers are below n")]
-    pub fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Action {
-        self.elements[integers(rng, self.n) as usize]
-    }
-}
-
-/// Gymnasium's `Box`: vectors of `f32`, each component between two finite bounds.
+/// Gymnasium's `Box`: vectors of `f32`, each component between two finite bounds. It has no
+/// generator: `space.seed(s)` is a new `Pcg64`.
 ///
 /// ```
 /// use acrobot::env::BoxSpace;

@@ -2,7 +2,7 @@
 
 use acrobot::env::{AcrobotEnv, Env, RenderMode, make_with};
 use acrobot::numpy::Pcg64;
-use acrobot::{Fast, Params, TimeLimit};
+use acrobot::{Action, Fast, Params, TimeLimit};
 use common::in_every_arithmetic;
 use proptest::prelude::*;
 
@@ -17,7 +17,7 @@ fn fitting() -> impl Strategy<Value = Params> {
 fn play(env: &mut TimeLimit<AcrobotEnv>, mut rng: Pcg64) -> Vec<(Vec<f32>, f32)> {
     let mut steps = Vec::new();
     loop {
-        let step = env.step(env.action_space().sample(&mut rng));
+        let step = env.step(Action::sample(&mut rng));
         assert!(env.observation_space().contains(&step.observation), "{step:?}");
         assert!(step.reward.is_finite(), "{step:?}");
         let done = step.done();
