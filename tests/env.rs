@@ -123,6 +123,7 @@ fn any_acrobot_is_an_environment() {
     assert_eq!(step.observation, expected.observation);
     assert_eq!((step.reward, step.terminated), (expected.reward, expected.terminated));
     assert_eq!(env.unwrapped().acrobot(), Some(&alone));
+    assert_eq!(env.observation_space().high(), [1.0, 1.0, 1.0, 1.0, 1e30, 1e30]);
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn tolerance<S: Real, V: Numbers<S>>(seen: &Seen<V>, params: &Params<V>) -> V {
     const TARGET: f64 = 2.0;
     const RADIUS: f64 = 0.2;
     // Up to 0.1 mm beyond, the nearest `f32` would be 1.
-    const BELOW_1: f64 = 1.0 - f32::EPSILON as f64 / 2.0;
+    const BELOW_1: f64 = 1.0_f32.next_down() as f64;
     let number = |x| V::splat(S::from_f64(x));
     let [_, [x, y]] = seen.positions(params);
     let below = number(TARGET) - y;
