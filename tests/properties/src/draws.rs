@@ -2,9 +2,9 @@
 
 use std::num::NonZeroU32;
 
+use acrobot::Error;
 use acrobot::env::BoxSpace;
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
-use acrobot::Error;
 use common::Repeating;
 use proptest::prelude::*;
 use rand_core::SeedableRng;
