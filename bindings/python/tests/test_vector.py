@@ -141,6 +141,7 @@ def test_states_can_be_set(gymnasium_episodes):
     envs.state = envs.state
     assert envs._native.__getstate__() == before
     states = envs.state.copy()
+    assert states.dtype == (np.float64 if gymnasium_episodes else np.float32)
     states[3] = 1.0, -1.0, 0.5, 300.0
     states[5] = 7.0, 0.0, 0.0, 0.0
     envs.state = states
