@@ -106,8 +106,8 @@ const IN_PYTHON: [(&str, &str); 18] = [
     ("", "FRICTION_2"),
 ];
 
-/// The comment on a declaration's line and on those above it has the unit and the range, unless it
-/// says that they are those of another parameter.
+/// The comment on a declaration's line and on those above it has the unit and the range, or says
+/// that they are those of another parameter, as in "As `mass1`".
 fn check(file: &str, declaration: &str, unit: &str, range: &str) {
     let text = text_of(file);
     let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
@@ -117,9 +117,11 @@ fn check(file: &str, declaration: &str, unit: &str, range: &str) {
     let above = lines[..at].iter().rev().take_while(is_comment);
     let found: Vec<&str> = above.copied().chain([lines[at]]).collect();
     let found = found.join(" ");
-    let refers = found.contains(" As `") || found.contains("; as `");
-    let described = found.contains(unit) && found.contains(range);
-    assert!(refers || described, "{file}: {found:?} has no {unit:?} or {range:?}");
+    if let Some((_, other)) = found.split_once("As `").or_else(|| found.split_once("as `")) {
+        let (other, _) = other.split_once('`').unwrap();
+        return check(file, &format!("pub {other}: "), unit, range);
+    }
+    assert!(found.contains(unit) && found.contains(range), "{file}: {found:?}: {unit}; {range}");
 }
 
 /// The pages name the repository's files by their paths, without links, because rustdoc shows the
