@@ -39,8 +39,8 @@
 //! - [`ResetOptions`] has what a reset may choose: the seed, and the bounds of the initial state.
 //! - [`Error`] names a rejected value, its unit and the rule.
 //!
-//! [`physics`] has the model alone, and [`control`](physics::control). [`batch`] has many acrobots
-//! at once. The [`guide`] has a page for each reader and each subject.
+//! [`physics`] has the model alone, [`control`] linearizes and regulates it. [`batch`] has many
+//! acrobots at once. The [`guide`] has a page for each reader and each subject.
 //!
 //! # Features
 //!
@@ -84,6 +84,7 @@ mod acrobot;
 mod action;
 pub mod arithmetic;
 pub mod batch;
+pub mod control;
 #[cfg(feature = "std")]
 pub mod env;
 mod error;

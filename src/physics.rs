@@ -4,8 +4,8 @@
 //! [`Pendulum`] has no random numbers, so it takes a third of the flash of an
 //! [`Acrobot`](crate::Acrobot).
 //!
-//! For your own integrator, use [`Pendulum::derivative`]. The module [`control`] linearizes and
-//! regulates. The guide explains the [equations](crate::guide::equations).
+//! For your own integrator, use [`Pendulum::derivative`]. [`control`](crate::control)
+//! linearizes and regulates. The guide explains the [equations](crate::guide::equations).
 
 /// Repeats items for both scalars, named `S`: arithmetic in a `const fn` needs a concrete type.
 macro_rules! for_f32_and_f64 {
@@ -36,17 +36,15 @@ mod rk4;
 mod state;
 mod step;
 
-// Last, so that the documentation of a pendulum begins with its own methods.
-pub mod control;
-
 pub(crate) use arithmetic::{check_params, default_model, model};
 pub use bounds::{saturate, wrap};
 pub use friction::Viscous;
 pub(crate) use geometry::{directions, positions};
-pub(crate) use model::{Defaults, Given, Model, Modeled};
+pub(crate) use model::{Constants, Defaults, Given, Model, Modeled};
 pub(crate) use params::FIELDS;
 pub use params::{Dynamics, Params};
 pub use pendulum::Pendulum;
 pub(crate) use pendulum::{check_torque, sin_cos};
+pub(crate) use rk4::plus_scaled;
 pub use state::State;
 pub(crate) use step::step;

@@ -2,8 +2,8 @@
 //! live changes, sizes and auto-traits.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Micro, Reference};
+use acrobot::control::ControlError;
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::control::ControlError;
 use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::task::{GymnasiumV0, ResetBounds, Task};
 use acrobot::trajectory::{Trajectory, Transition};

@@ -2,9 +2,9 @@
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
 use acrobot::batch::VecBatch;
+use acrobot::control::inverse_dynamics;
 use acrobot::env::{AcrobotEnv, RenderMode};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use acrobot::physics::control::inverse_dynamics;
 use acrobot::physics::{Dynamics, Pendulum, Viscous};
 use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 

@@ -243,7 +243,7 @@ impl<A: Arithmetic> Pendulum<A> {
     }
 
     #[inline]
-    pub(super) fn model(&self) -> &Model<A::Scalar> {
+    pub(crate) fn model(&self) -> &Model<A::Scalar> {
         &self.model
     }
 

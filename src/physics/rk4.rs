@@ -75,7 +75,7 @@ fn compact<A: Arithmetic, V: Numbers<A::Scalar>>(
 /// y + h k.
 // Not a loop, which LLVM can vectorize across the four numbers instead of across their lanes.
 #[inline(always)]
-pub(super) fn plus_scaled<V: Copy + Add<Output = V> + Mul<Output = V>>(
+pub(crate) fn plus_scaled<V: Copy + Add<Output = V> + Mul<Output = V>>(
     [y1, y2, y3, y4]: [V; 4],
     h: V,
     [k1, k2, k3, k4]: [V; 4],

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::physics::control::{Lqr, inverse_dynamics};
+use acrobot::control::{self, Lqr, difference, inverse_dynamics};
 use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Fast, Params, Portable, State};
 use common::{assert_says, in_every_arithmetic};
@@ -21,7 +21,7 @@ fn regulated<A: Arithmetic>(
     let params = params.cast();
     let pendulum = Pendulum::new(params, target.cast()).unwrap();
     let q = diagonal([weight; 4]).map(cast);
-    let regulator = pendulum.regulator(A::Scalar::ZERO, &q, Real::from_f64(1.0));
+    let regulator = control::regulator(&pendulum, A::Scalar::ZERO, &q, Real::from_f64(1.0));
     (pendulum, regulator.unwrap())
 }
 
@@ -39,10 +39,10 @@ fn largest_lean(params: Params, limit: f64, weight: f64) -> usize {
         state.theta1 -= f64::from(lean) / 1000.0;
         pendulum.set_state(state).unwrap();
         for _ in 0..2000 {
-            let torque = regulator.torque(pendulum.deviation(State::UPRIGHT));
+            let torque = regulator.torque(difference(pendulum.state(), State::UPRIGHT));
             pendulum.step(saturate(torque, limit)).unwrap();
         }
-        let left = pendulum.deviation(State::UPRIGHT);
+        let left = difference(pendulum.state(), State::UPRIGHT);
         left.iter().all(|x| x.abs() < 1e-3)
     };
     (1..1000).take_while(holds).count()
@@ -70,7 +70,7 @@ fn deviation_held<A: Arithmetic>(params: Params, target: State) -> f64 {
     pendulum.set_state(state).unwrap();
     let (steps, mut most) = ((10.0 / params.dt) as u32, 0.0_f64);
     for step in 0..steps {
-        let x = pendulum.deviation(target);
+        let x = difference(pendulum.state(), target);
         pendulum.step(regulator.torque(x)).unwrap();
         if step >= steps / 10 * 9 {
             most = most.max(x[0].to_f64().abs()).max(x[1].to_f64().abs());
@@ -101,7 +101,8 @@ fn a_regulator_needs_an_equilibrium() {
         let regulate = |state: State, torque| {
             let params = Params::<f64>::DEFAULT.cast();
             let pendulum = Pendulum::<A>::new(params, state.cast()).unwrap();
-            let regulator = pendulum.regulator(Real::from_f64(torque), &q, Real::from_f64(1.0));
+            let regulator =
+                control::regulator(&pendulum, Real::from_f64(torque), &q, Real::from_f64(1.0));
             regulator.map(drop).map_err(|error| error.to_string())
         };
         // Link 2 is horizontal, and link 1 leans to the other side.

@@ -1,11 +1,11 @@
-//! `physics::control` is right: derivatives, forces, velocities and gains equal those of 200
+//! `control` is right: derivatives, forces, velocities and gains equal those of 200
 //! digits, recorded by `tests/data/control.py`.
 
 mod balance;
 mod regulators;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
-use acrobot::physics::control::{
+use acrobot::control::{
     Forces, difference, inverse_dynamics, linearize, linearize_step, velocities,
 };
 use acrobot::physics::{Pendulum, Viscous};

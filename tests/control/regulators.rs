@@ -3,8 +3,8 @@
 use std::array::from_fn;
 
 use acrobot::arithmetic::Real;
+use acrobot::control::{ControlError, LinearModel, Lqr, linearize_step, lqr};
 use acrobot::physics::Pendulum;
-use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, linearize_step, lqr};
 use acrobot::{Params, Portable, State};
 use common::{lines, numbers, text_of};
 
@@ -25,7 +25,7 @@ const IDENTITY: [[f64; 4]; 4] =
 fn regulate<S: Real>(x: &[f64]) -> Lqr<S> {
     let [a, q] = [&x[..16], &x[20..36]].map(|m| matrix(m).map(cast));
     let b = cast(vector(&x[16..20]));
-    lqr(&DiscreteModel { a, b }, &q, S::from_f64(x[36])).unwrap()
+    lqr(&LinearModel { a, b }, &q, S::from_f64(x[36])).unwrap()
 }
 
 #[test]
@@ -98,14 +98,14 @@ fn gains_of_special_models_are_exact() {
         (diagonal([0.5; 4]), [0.0; 4], IDENTITY, [0.0; 4]),
         (none, all, IDENTITY, [0.0; 4]),
     ] {
-        let found = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap().gain;
+        let found = lqr(&LinearModel { a, b }, &q, 1.0).unwrap().gain;
         assert!(found == expected || relative(&found, &expected) < 1e-14, "{found:?}");
     }
 }
 
 #[test]
 fn the_unit_of_the_weights_changes_no_digit() {
-    let model = DiscreteModel { a: diagonal([0.5, 0.4, 0.3, 0.2]), b: [1.0; 4] };
+    let model = LinearModel { a: diagonal([0.5, 0.4, 0.3, 0.2]), b: [1.0; 4] };
     let of = |unit: f64| lqr(&model, &IDENTITY.map(|row| row.map(|x| x * unit)), unit);
     let gain = of(1.0).unwrap().gain;
     for exponent in [-1000, -1, 1, 1023] {
@@ -120,7 +120,7 @@ fn a_gain_that_rounding_makes_useless_is_an_error() {
         let a = diagonal([1e9, 0.5, 0.4, 0.3]).map(cast::<S, 4>);
         let b = cast([0.3, 0.0, 0.0, 0.0]);
         let q = IDENTITY.map(cast);
-        lqr(&DiscreteModel { a, b }, &q, S::from_f64(1.0)).map(drop)
+        lqr(&LinearModel { a, b }, &q, S::from_f64(1.0)).map(drop)
     }
     assert_eq!(found::<f64>(), Ok(()));
     let error = f64::from(f32::EPSILON);
@@ -133,7 +133,7 @@ fn a_gain_that_rounding_makes_useless_is_an_error() {
 fn a_gain_that_rounding_spoils_is_an_error() {
     let growing = |factor| diagonal([2.0, factor, 0.5, 0.4]);
     let found = |a, weight| {
-        let model = DiscreteModel { a, b: [1.0; 4] };
+        let model = LinearModel { a, b: [1.0; 4] };
         match lqr(&model, &diagonal([weight; 4]), 1.0) {
             Ok(_) => 0.0,
             Err(ControlError::IllConditioned { error }) => error,
@@ -146,7 +146,7 @@ fn a_gain_that_rounding_spoils_is_an_error() {
     assert_eq!(found(growing(3.0), 1e-251), 1.0);
 }
 
-fn upright() -> DiscreteModel {
+fn upright() -> LinearModel {
     linearize_step(&Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap(), 0.0)
         .unwrap()
 }
@@ -205,7 +205,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
             stabilizable,
         ),
     ] {
-        let error = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap_err();
+        let error = lqr(&LinearModel { a, b }, &q, 1.0).unwrap_err();
         assert_eq!(error, expected, "{a:?} {b:?} {q:?}");
     }
 
@@ -218,7 +218,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     assert_eq!(error, ControlError::NotStabilizable);
 
     // What `f32` cannot hold has a name.
-    let model = DiscreteModel { a: growing.map(cast::<f32, 4>), b: [1e-30; 4] };
+    let model = LinearModel { a: growing.map(cast::<f32, 4>), b: [1e-30; 4] };
     let error = lqr(&model, &IDENTITY.map(cast), 1.0).unwrap_err();
     assert_eq!(error.to_string(), "cost_to_go must be finite in each element, got inf");
 }

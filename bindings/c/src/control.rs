@@ -1,5 +1,6 @@
 //! A linear-quadratic regulator.
 
+use acrobot::control::{difference, regulator};
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, State};
 
@@ -18,7 +19,7 @@ pub unsafe extern "C" fn acrobot_deviation(
     get(acrobot, deviation, |acrobot| {
         let target = State::from(read(target)?);
         target.validate()?;
-        Ok(State::from(acrobot.inner().pendulum().deviation(target)).into())
+        Ok(State::from(difference(acrobot.inner().pendulum().state(), target)).into())
     })
 }
 
@@ -53,7 +54,7 @@ pub unsafe extern "C" fn acrobot_lqr(
             }
             *to = weight;
         }
-        let regulator = pendulum.regulator(0.0, &weights, r)?;
+        let regulator = regulator(&pendulum, 0.0, &weights, r)?;
         Ok(State::from(regulator.gain).into())
     })
 }

@@ -3,7 +3,7 @@
 use core::ffi::{c_char, c_int};
 
 use acrobot::Error;
-use acrobot::physics::control::ControlError;
+use acrobot::control::ControlError;
 
 #[repr(C)]
 pub enum acrobot_status_t {

@@ -21,7 +21,7 @@ mod planner;
 mod recovery;
 
 use acrobot::arithmetic::Real;
-use acrobot::physics::control::{ControlError, difference};
+use acrobot::control::{ControlError, difference};
 use acrobot::physics::{Pendulum, State, saturate};
 use acrobot::{Error, Fast, Params};
 

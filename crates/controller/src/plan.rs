@@ -3,8 +3,8 @@
 use core::fmt;
 
 use acrobot::arithmetic::Real;
+use acrobot::control::{ControlError, difference};
 use acrobot::physics::State;
-use acrobot::physics::control::{ControlError, difference};
 
 use crate::dot;
 

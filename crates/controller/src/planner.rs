@@ -11,8 +11,8 @@
 use core::f64::consts::LN_10;
 
 use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::control::{ControlError, LinearModel, difference, linearize_step};
 use acrobot::numpy::uniform;
-use acrobot::physics::control::{ControlError, DiscreteModel, difference, linearize_step};
 use acrobot::physics::{Pendulum, State, saturate};
 use acrobot::rand_core::Rng;
 use acrobot::{Error, Params};
@@ -174,7 +174,7 @@ impl<A: Arithmetic> Planner<A> {
         let mut cost = self.recovery.regulator.cost_to_go;
         for step in plan.iter_mut().rev() {
             self.model.set_state(step.state)?;
-            let DiscreteModel { a, b } = linearize_step(&self.model, step.torque)?;
+            let LinearModel { a, b } = linearize_step(&self.model, step.torque)?;
             let cost_b = cost.map(|row| dot(row, b));
             let divisor = dot(b, cost_b) + one;
             let mut columns = transpose(a);
@@ -252,7 +252,7 @@ impl<A: Arithmetic> Planner<A> {
                 (step.state, step.torque) = (state, torque);
             }
         }
-        let x = self.model.deviation(State::UPRIGHT);
+        let x = difference(self.model.state(), State::UPRIGHT);
         let to_go = self.recovery.cost(x).to_f64();
         Ok(cost + number(ARRIVAL * libm::log1p(to_go / NEAR)))
     }
@@ -265,14 +265,14 @@ impl<A: Arithmetic> Planner<A> {
         self.model.step(last.torque).ok()?;
         // The slope and the curvature of the cost from here on. Where the logarithm is concave, the
         // curvature is that without it.
-        let x = self.model.deviation(State::UPRIGHT);
+        let x = difference(self.model.state(), State::UPRIGHT);
         let p_x = self.recovery.regulator.cost_to_go.map(|row| dot(row, x));
         let weight = A::Scalar::from_f64(2.0 * ARRIVAL) / (dot(p_x, x) + number(NEAR));
         let mut slope = p_x.map(|x| x * weight);
         let mut curvature = self.recovery.regulator.cost_to_go.map(|row| row.map(|x| x * weight));
         for step in plan.iter_mut().rev() {
             self.model.set_state(step.state).ok()?;
-            let DiscreteModel { a, b } = linearize_step(&self.model, step.torque).ok()?;
+            let LinearModel { a, b } = linearize_step(&self.model, step.torque).ok()?;
             let columns = transpose(a);
             let curved_b = curvature.map(|row| dot(row, b));
             // The derivatives of the cost by the torque, by the state, and by both.

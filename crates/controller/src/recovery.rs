@@ -8,7 +8,7 @@
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, linearize_step, lqr};
+use acrobot::control::{ControlError, LinearModel, Lqr, difference, linearize_step, lqr};
 use acrobot::physics::{Pendulum, State, saturate};
 use acrobot::{Error, Params};
 
@@ -54,8 +54,8 @@ impl<S: Real> Recovery<S> {
             }));
         }
         let machine = Pendulum::<A>::new(params, State::UPRIGHT)?;
-        let DiscreteModel { a, b } = linearize_step(&machine, S::ZERO)?;
-        let model = DiscreteModel { a: a.map(|row| row.map(S::to_f64)), b: b.map(S::to_f64) };
+        let LinearModel { a, b } = linearize_step(&machine, S::ZERO)?;
+        let model = LinearModel { a: a.map(|row| row.map(S::to_f64)), b: b.map(S::to_f64) };
         // In f64, because the rounding of P to f32 can be larger than its smallest eigenvalue.
         let exact = lqr(&model, &identity(), 1.0)?;
         let regulator = Lqr {
@@ -81,7 +81,7 @@ impl<S: Real> Recovery<S> {
     ) -> bool {
         let mut inside = 0;
         for _ in 0..most.min(self.steps) {
-            let x = model.deviation(State::UPRIGHT);
+            let x = difference(model.state(), State::UPRIGHT);
             if !is_near(x) {
                 return false;
             }

@@ -4,8 +4,8 @@
 use std::error::Error;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real};
+use acrobot::control::difference;
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::control::difference;
 use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Acrobot, Fast, Params, Portable, State};
 use controller::{Controller, NoPlan, Planner, Step};
@@ -31,7 +31,7 @@ fn swings_up_and_holds<A: Arithmetic>(params: Params<A::Scalar>, limit: f64) {
         for _ in 0..500 {
             machine.step(saturate(planner.follow(&[], 0, machine.state()), limit)).unwrap();
         }
-        let x = machine.deviation(State::UPRIGHT).map(Real::to_f64);
+        let x = difference(machine.state(), State::UPRIGHT).map(Real::to_f64);
         assert!(x.iter().all(|x| x.abs() < 0.01), "{} {x:?}", A::NAME);
     }
 }

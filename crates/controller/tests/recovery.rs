@@ -1,6 +1,7 @@
 //! What the regulator takes over, it holds: each accepted state, and the end of each plan.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
+use acrobot::control::difference;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Pendulum, Viscous, saturate};
 use acrobot::{Fast, Params, Portable, State};
@@ -20,7 +21,7 @@ fn holds<A: Arithmetic>(
     let mut upright = 0;
     for i in 0..steps {
         machine.step(saturate(planner.follow(plan, i, machine.state()), limit)).unwrap();
-        let [x1, x2, ..] = machine.deviation(State::UPRIGHT).map(Real::to_f64);
+        let [x1, x2, ..] = difference(machine.state(), State::UPRIGHT).map(Real::to_f64);
         if x1.abs().max(x2.abs()) > 0.1 {
             upright = i + 1;
         }

@@ -1,13 +1,13 @@
-//! `physics::control`, for any numbers: finite results or an error, and no hang.
+//! `control`, for any numbers: finite results or an error, and no hang.
 
 use std::array::from_fn;
 
 use acrobot::State;
 use acrobot::arithmetic::Real;
-use acrobot::physics::Pendulum;
-use acrobot::physics::control::{
-    ControlError, DiscreteModel, inverse_dynamics, linearize, linearize_step, lqr, velocities,
+use acrobot::control::{
+    self, ControlError, LinearModel, inverse_dynamics, linearize, linearize_step, lqr, velocities,
 };
+use acrobot::physics::Pendulum;
 use common::in_every_arithmetic;
 use proptest::prelude::*;
 
@@ -67,7 +67,7 @@ fn regulators_stabilize_or_are_errors() {
             number::<S>(range),
         );
         holds(2000, given, |(a, b, q, r)| {
-            let model = DiscreteModel { a, b };
+            let model = LinearModel { a, b };
             let Ok(regulator) = lqr(&model, &q, r) else {
                 return;
             };
@@ -104,7 +104,7 @@ fn moderate_pendulums_can_be_held_upright() {
                 return;
             };
             // Rounding leaves upright an equilibrium.
-            assert_eq!(pendulum.regulator(zero, &q, r), Ok(regulator));
+            assert_eq!(control::regulator(&pendulum, zero, &q, r), Ok(regulator));
             // In f64, where rounding hides less, the powers of the closed loop vanish too.
             let [gain, b] = [regulator.gain, model.b].map(|row| row.map(Real::to_f64));
             let mut closed: [[f64; 4]; 4] =

@@ -13,7 +13,7 @@
 
 use core::cell::RefCell;
 
-use acrobot::physics::control::{ControlError, difference};
+use acrobot::control::{ControlError, difference};
 use acrobot::physics::saturate;
 use acrobot::{Acrobot, Error, Fast, Params, State};
 use acrobot_cortex_m::ram;

@@ -7,11 +7,11 @@
 use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
-use acrobot::numpy::Pcg64;
-use acrobot::physics::Pendulum;
-use acrobot::physics::control::{
+use acrobot::control::{
     ControlError, difference, inverse_dynamics, linearize, linearize_step, lqr, velocities,
 };
+use acrobot::numpy::Pcg64;
+use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Theme};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;

@@ -10,8 +10,8 @@ use core::fmt::{self, Write as _};
 use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Reference};
+use acrobot::control::{difference, linearize_step, lqr};
 use acrobot::physics::Pendulum;
-use acrobot::physics::control::{linearize_step, lqr};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable};
 use acrobot_cortex_m::{nop, stack};
 use semihosting::{println, process};
@@ -73,7 +73,7 @@ fn regulate(acrobot: &mut Acrobot<Fast>) {
     if let Ok(model) = linearize_step(acrobot.pendulum(), 0.0)
         && let Ok(regulator) = lqr(&model, &black_box([[1.0; 4]; 4]), 1.0)
     {
-        let x = acrobot.pendulum().deviation(acrobot.state());
+        let x = difference(acrobot.pendulum().state(), acrobot.state());
         black_box(regulator.torque(x));
     }
 }

@@ -13,10 +13,10 @@ use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
-use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
-use acrobot::physics::control::{
-    difference, inverse_dynamics, linearize, linearize_step, lqr, velocities,
+use acrobot::control::{
+    difference, inverse_dynamics, linearize, linearize_step, lqr, regulator, velocities,
 };
+use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
 use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup, Task};
@@ -119,14 +119,14 @@ fn control<A: Arithmetic>() {
         linearize(&pendulum, number()),
         inverse_dynamics(&pendulum, [number(), number()]),
         velocities(&pendulum),
-        pendulum.regulator(number(), &weights, number()),
+        regulator(&pendulum, number(), &weights, number()),
     ));
     let Ok(model) = linearize_step(&pendulum, number()) else {
         return;
     };
     if let Ok(regulator) = black_box(lqr(&model, &weights, number())) {
         black_box(difference(pendulum.state(), state()));
-        black_box(regulator.torque(pendulum.deviation(state())));
+        black_box(regulator.torque(difference(pendulum.state(), state())));
     }
 }
 

@@ -17,8 +17,8 @@ mod search;
 use std::ops::Range;
 
 use acrobot::arithmetic::Arithmetic;
+use acrobot::control::difference;
 use acrobot::numpy::Pcg64;
-use acrobot::physics::control::difference;
 use acrobot::physics::saturate;
 use acrobot::task::Task;
 use acrobot::{Acrobot, Fast, Params, State};

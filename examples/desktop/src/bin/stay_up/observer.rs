@@ -6,8 +6,8 @@
 use std::array::from_fn;
 
 use acrobot::arithmetic::Damped;
+use acrobot::control::difference;
 use acrobot::physics::Pendulum;
-use acrobot::physics::control::difference;
 use acrobot::{Error, Params, Portable, State};
 
 /// The state, and the factors of the masses, of the first length and of the second centre of mass.

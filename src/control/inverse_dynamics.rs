@@ -2,13 +2,10 @@
 
 use super::error::ControlError;
 use super::matrix::check_finite;
+use crate::arithmetic::Arithmetic;
 use crate::error::Range;
 use crate::math::Real;
-use crate::physics::arithmetic::Arithmetic;
-use crate::physics::friction::Viscous;
-use crate::physics::geometry::directions;
-use crate::physics::params::Dynamics;
-use crate::physics::pendulum::Pendulum;
+use crate::physics::{Dynamics, Pendulum, Viscous, directions};
 
 /// The torques and forces of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +30,7 @@ pub struct Forces<S = f64> {
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
-/// use acrobot::physics::control::inverse_dynamics;
+/// use acrobot::control::inverse_dynamics;
 /// use acrobot::{Params, Portable, State};
 ///
 /// let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, State::from([0.5, -0.3, 1.0, 2.0]))?;
@@ -43,7 +40,7 @@ pub struct Forces<S = f64> {
 ///
 /// let hanging = inverse_dynamics(&Pendulum::<Portable>::hanging(), [0.0, 0.0])?;
 /// assert_eq!(hanging.reaction, [0.0, 2.0 * 9.8]); // the weight of both links
-/// # Ok::<(), acrobot::physics::control::ControlError>(())
+/// # Ok::<(), acrobot::control::ControlError>(())
 /// ```
 ///
 /// # Errors
@@ -108,13 +105,13 @@ pub fn inverse_dynamics<A: Arithmetic>(
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
-/// use acrobot::physics::control::velocities;
+/// use acrobot::control::velocities;
 /// use acrobot::{Params, Portable, State};
 ///
 /// let swinging = State { dtheta1: 1.0, ..State::HANGING };
 /// let [elbow, tip] = velocities(&Pendulum::<Portable>::new(Params::DEFAULT, swinging)?)?;
 /// assert_eq!((elbow, tip), ([1.0, 0.0], [2.0, 0.0]));
-/// # Ok::<(), acrobot::physics::control::ControlError>(())
+/// # Ok::<(), acrobot::control::ControlError>(())
 /// ```
 ///
 /// # Errors

@@ -2,39 +2,36 @@
 
 use super::error::ControlError;
 use super::matrix::check_finite;
+use crate::arithmetic::Arithmetic;
 use crate::math::{Real, SinCos};
-use crate::physics::arithmetic::Arithmetic;
-use crate::physics::friction::Viscous;
-use crate::physics::geometry::directions;
-use crate::physics::model::{Constants, Model};
-use crate::physics::pendulum::{Pendulum, check_torque};
+use crate::physics::{Constants, Model, Pendulum, Viscous, check_torque, directions};
 
-/// The model ẋ = A x + B u: x is the deviation from a state \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s,
-/// and u that from a torque, N m.
+/// A linear model: x is the deviation from a state \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u that
+/// from a torque, N m. The equations of motion give ẋ = A x + B u, one step gives x′ = A x + B u.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ContinuousModel<S = f64> {
-    /// A by rows: `a[i][j]` is the derivative of the i-th rate by the j-th number of the state.
+pub struct LinearModel<S = f64> {
+    /// A by rows: `a[i][j]` is the derivative of the i-th result by the j-th number of the state.
     pub a: [[S; 4]; 4],
-    /// B: the derivatives of the rates by the torque.
+    /// B: the derivatives of the results by the torque.
     pub b: [S; 4],
 }
 
-/// Linearizes the equations of motion about the pendulum's state and a torque, N m. The derivatives
-/// are exact up to rounding.
+/// Linearizes the equations of motion about the pendulum's state and a torque, N m: A and B of ẋ = A
+/// x + B u, in 1/s, and exact up to rounding.
 ///
 /// The state need not be an equilibrium. Bounds of the velocities do not count.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
-/// use acrobot::physics::control::linearize;
+/// use acrobot::control::linearize;
 /// use acrobot::{Params, Portable, State};
 ///
 /// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
 /// let model = linearize(&upright, 0.0)?;
 /// assert_eq!(model.a[0], [0.0, 0.0, 1.0, 0.0]); // the derivative of θ1 is θ̇1
 /// assert!(model.a[2][0] > 0.0); // gravity drives link 1 away
-/// # Ok::<(), acrobot::physics::control::ControlError>(())
+/// # Ok::<(), acrobot::control::ControlError>(())
 /// ```
 ///
 /// # Errors
@@ -44,13 +41,13 @@ pub struct ContinuousModel<S = f64> {
 pub fn linearize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
-) -> Result<ContinuousModel<A::Scalar>, ControlError> {
+) -> Result<LinearModel<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
     let y = pendulum.state().into();
     let (_, [by_state @ .., by_torque]) =
         partials::<A>(pendulum.model(), y, pendulum.sin_cos(), torque);
-    let model = ContinuousModel {
+    let model = LinearModel {
         a: [
             [zero, zero, one, zero],
             [zero, zero, zero, one],

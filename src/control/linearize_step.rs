@@ -1,35 +1,22 @@
 //! The derivatives of a step.
 
 use super::error::ControlError;
-use super::linearize::partials;
+use super::linearize::{LinearModel, partials};
 use super::matrix::{check_finite, dot, identity, transpose};
+use crate::arithmetic::Arithmetic;
 use crate::math::{Real, SinCos};
-use crate::physics::arithmetic::Arithmetic;
-use crate::physics::model::Model;
-use crate::physics::pendulum::{Pendulum, check_torque};
-use crate::physics::rk4::plus_scaled;
-
-/// The model x′ = A x + B u of one step: x and x′ are the deviations before and after it, \[θ1, θ2,
-/// θ̇1, θ̇2\] in rad and rad/s, and u is that of the torque, N m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct DiscreteModel<S = f64> {
-    /// A by rows: `a[i][j]` is the derivative of the i-th number after the step by the j-th before.
-    pub a: [[S; 4]; 4],
-    /// B: the derivatives of the state after the step by the torque.
-    pub b: [S; 4],
-}
+use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
 
 /// Linearizes one step of `dt` about the pendulum's state and a torque, N m, which is constant
-/// during the step.
+/// during the step: A and B of x′ = A x + B u.
 ///
-/// The result is the derivative of the Runge-Kutta step, exact up to rounding, and not a matrix
+/// They are the derivatives of the Runge-Kutta step, exact up to rounding, and not a matrix
 /// exponential. The state need not be an equilibrium: x′ is the deviation from the state after the
 /// step.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
-/// use acrobot::physics::control::linearize_step;
+/// use acrobot::control::linearize_step;
 /// use acrobot::{Params, Portable, State};
 ///
 /// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
@@ -38,7 +25,7 @@ pub struct DiscreteModel<S = f64> {
 /// let mut pushed = upright.clone();
 /// pushed.step(1e-6)?; // N m
 /// assert!((pushed.state().dtheta2 - model.b[3] * 1e-6).abs() < 1e-11);
-/// # Ok::<(), acrobot::physics::control::ControlError>(())
+/// # Ok::<(), acrobot::control::ControlError>(())
 /// ```
 ///
 /// # Errors
@@ -47,7 +34,7 @@ pub struct DiscreteModel<S = f64> {
 pub fn linearize_step<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
-) -> Result<DiscreteModel<A::Scalar>, ControlError> {
+) -> Result<LinearModel<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let model = pendulum.model();
     let common = &model.constants;
@@ -69,7 +56,7 @@ pub fn linearize_step<A: Arithmetic>(
     }
     let [columns @ .., b] = after.columns;
     let a = transpose(&columns);
-    let model = DiscreteModel { a, b };
+    let model = LinearModel { a, b };
     check_finite("a", model.a.as_flattened())?;
     check_finite("b", &model.b)?;
     Ok(model)

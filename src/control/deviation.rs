@@ -1,16 +1,13 @@
 //! The deviation of a state from another one.
 
 use crate::math::Real;
-use crate::physics::arithmetic::Arithmetic;
-use crate::physics::bounds::wrap;
-use crate::physics::pendulum::Pendulum;
-use crate::physics::state::State;
+use crate::physics::{State, wrap};
 
 /// The deviation of `state` from `target`, rad and rad/s. Differences of angles are wrapped to
 /// \[−π, π\], so it is continuous upright, where θ1 jumps from π to −π.
 ///
 /// ```
-/// use acrobot::physics::control::difference;
+/// use acrobot::control::difference;
 /// use acrobot::State;
 ///
 /// let beyond = State { theta1: -3.0, ..State::UPRIGHT };
@@ -27,12 +24,4 @@ pub fn difference<S: Real>(state: State<S>, target: State<S>) -> [S; 4] {
         state.dtheta1 - target.dtheta1,
         state.dtheta2 - target.dtheta2,
     ]
-}
-
-impl<A: Arithmetic> Pendulum<A> {
-    /// The [`difference`] of the state from `target`, rad and rad/s.
-    #[must_use]
-    pub fn deviation(&self, target: State<A::Scalar>) -> [A::Scalar; 4] {
-        difference(self.state(), target)
-    }
 }

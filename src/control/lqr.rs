@@ -2,7 +2,7 @@
 
 use super::double::{Double, MINUS_ONE, narrow, widen};
 use super::error::ControlError;
-use super::linearize_step::DiscreteModel;
+use super::linearize::LinearModel;
 use super::matrix::{
     Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, diagonal, dot, eliminate,
     identity, inner, largest, product, scale, spread, symmetrize, transpose,
@@ -22,7 +22,7 @@ pub struct Lqr<S = f64> {
 }
 
 impl<S: Real> Lqr<S> {
-    /// The torque −K x, N m, for a [deviation](crate::physics::Pendulum::deviation) x from the
+    /// The torque −K x, N m, for a [deviation](super::difference) x from the
     /// state of the linearization, rad and rad/s. Add the torque of the linearization, and
     /// [`saturate`](crate::physics::saturate) the sum to that of a motor. For an extreme deviation
     /// it can be infinite or NaN.
@@ -46,28 +46,24 @@ impl<S: Real> Lqr<S> {
 /// digits of `f64`, makes it exact up to rounding.
 ///
 /// ```
-/// use acrobot::physics::control::{DiscreteModel, lqr};
+/// use acrobot::control::{LinearModel, lqr};
 ///
 /// // A force moves a mass of 1 kg, whose position and velocity are the first and the third number,
 /// // in steps of 0.1 s. The others decay.
 /// let mut a = [[0.0_f64; 4]; 4];
 /// (a[0], a[1][1], a[2][2], a[3][3]) = ([1.0, 0.0, 0.1, 0.0], 0.5, 1.0, 0.5);
-/// let model = DiscreteModel { a, b: [0.005, 0.0, 0.1, 0.0] };
+/// let model = LinearModel { a, b: [0.005, 0.0, 0.1, 0.0] };
 /// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
 /// let regulator = lqr(&model, &q, 1.0)?;
 /// assert!((regulator.gain[0] - 0.9317).abs() < 1e-4 && regulator.gain[1] == 0.0);
-/// # Ok::<(), acrobot::physics::control::ControlError>(())
+/// # Ok::<(), acrobot::control::ControlError>(())
 /// ```
 ///
 /// # Errors
 ///
 /// [`ControlError::Invalid`] for an `r` that is not above 0, and each other [`ControlError`] except
 /// `NotInEquilibrium`.
-pub fn lqr<S: Real>(
-    model: &DiscreteModel<S>,
-    q: &[[S; 4]; 4],
-    r: S,
-) -> Result<Lqr<S>, ControlError> {
+pub fn lqr<S: Real>(model: &LinearModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, ControlError> {
     check_finite("a", model.a.as_flattened())?;
     check_finite("b", &model.b)?;
     check_finite("q", q.as_flattened())?;
