@@ -26,7 +26,6 @@ mod member;
 mod params;
 mod reset;
 mod settings;
-mod simd;
 #[cfg(feature = "serde")]
 mod snapshot;
 mod storage;
@@ -42,13 +41,13 @@ pub use inputs::Input;
 pub use lane_params::LaneParams;
 pub use member::Member;
 pub use settings::Autoreset;
-pub use simd::SimdLevel;
 pub use storage::Storage;
 #[cfg(feature = "alloc")]
 pub use vec_batch::{StepResults, VecBatch};
 
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
+pub use crate::math::SimdLevel;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{State, default_model, model};
 use crate::task::{Gymnasium, Of, ResetBounds, Task};
@@ -163,7 +162,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         buffers: StepBuffers<'_, T::Observation>,
     ) -> Result<(), Error> {
         let level = self.simd_level;
-        level.step(self.work(inputs, buffers)?);
+        level.run(self.work(inputs, buffers)?);
         Ok(())
     }
 
@@ -176,7 +175,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         buffers: StepBuffers<'_, T::Observation>,
     ) -> Result<(), Error> {
         let level = self.simd_level;
-        level.par_step(self.work(inputs, buffers)?);
+        self.work(inputs, buffers)?.par_step(level);
         Ok(())
     }
 

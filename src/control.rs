@@ -4,6 +4,7 @@
 //! A result is finite, or a [`ControlError`] that names what overflows with extreme parameters. The
 //! guide holds the acrobot upright with [a regulator](crate::guide::control).
 
+mod cost;
 mod deviation;
 mod double;
 mod error;
@@ -12,12 +13,20 @@ mod linearize;
 mod linearize_step;
 mod lqr;
 mod matrix;
+mod passes;
+mod plan;
+mod planner;
+mod recovery;
 mod regulator;
+mod tries;
 
+pub use cost::Cost;
 pub use deviation::difference;
 pub use error::ControlError;
 pub use inverse_dynamics::{Forces, inverse_dynamics, velocities};
 pub use linearize::{LinearModel, linearize};
 pub use linearize_step::linearize_step;
 pub use lqr::{Lqr, lqr};
+pub use plan::{Knot, NoPlan};
+pub use planner::Planner;
 pub use regulator::regulator;

@@ -2,8 +2,12 @@
 
 mod lanes;
 mod real;
+mod simd;
 pub mod sines;
 
+pub(crate) use lanes::Lanewise;
 pub use lanes::{Lanes, Numbers};
 pub(crate) use real::sealed;
 pub use real::{Real, SinCos};
+pub(crate) use simd::Kernel;
+pub use simd::SimdLevel;

@@ -8,6 +8,9 @@ use super::inputs::Inputs;
 use super::lane_params::LaneParams;
 use super::settings::{Parameters, Settings};
 use crate::arithmetic::Arithmetic;
+use crate::math::Kernel;
+#[cfg(feature = "rayon")]
+use crate::math::SimdLevel;
 use crate::numpy::Pcg64;
 use crate::task::{Draws, Task};
 
@@ -23,12 +26,12 @@ pub(super) struct Work<'a, A: Arithmetic, T: Task, const N: usize> {
     pub(super) buffers: StepBuffers<'a, T::Observation>,
 }
 
-impl<'a, A: Arithmetic, T: Task, const N: usize> Work<'a, A, T, N> {
+impl<A: Arithmetic, T: Task, const N: usize> Kernel for Work<'_, A, T, N> {
     /// Whether acrobots share their parameters is decided once, and not for each block, which would
     /// be 3 to 6 % slower. `HIDE` keeps the model in memory: with AVX-512 the compiler would hold
     /// it in registers and spill the state, 16 % slower.
     #[inline(always)]
-    pub(super) fn step<const HIDE: bool>(self) {
+    fn run<const HIDE: bool>(self) {
         let Self { settings, blocks, mut generators, mut inputs, mut buffers, .. } = self;
         if let Parameters::Shared(model) = &settings.parameters {
             let shared = LaneParams::shared(model);
@@ -47,10 +50,26 @@ impl<'a, A: Arithmetic, T: Task, const N: usize> Work<'a, A, T, N> {
             }
         }
     }
+}
+
+#[cfg(feature = "rayon")]
+impl<'a, A: Arithmetic, T: Task, const N: usize> Work<'a, A, T, N> {
+    /// Steps on all cores: halves the blocks until a task is too small to share.
+    pub(super) fn par_step(mut self, level: SimdLevel) {
+        // Both are about 100 µs of work: waking a thread takes 10 µs.
+        let acrobots_of_a_task = match size_of::<A::Scalar>() {
+            4 => 16_384,
+            _ => 1024,
+        };
+        if self.blocks.len() * N <= acrobots_of_a_task {
+            return level.run(self);
+        }
+        let first = self.take(self.blocks.len() / 2);
+        rayon::join(|| first.par_step(level), || self.par_step(level));
+    }
 
     /// Splits off the first `blocks` blocks. Cannot panic, whatever the lengths.
-    #[cfg(feature = "rayon")]
-    pub(super) fn take(&mut self, blocks: usize) -> Work<'a, A, T, N> {
+    fn take(&mut self, blocks: usize) -> Work<'a, A, T, N> {
         let acrobots = blocks * N;
         Work {
             settings: self.settings,

@@ -2,9 +2,10 @@
 
 use super::error::ControlError;
 use super::linearize::{LinearModel, partials};
-use super::matrix::{check_finite, dot, identity, transpose};
+use super::matrix::{check_finite, dot, transpose};
 use crate::arithmetic::Arithmetic;
-use crate::math::{Real, SinCos};
+use crate::math::sealed::Sealed as _;
+use crate::math::{Lanes, Lanewise, Real, SinCos};
 use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
 
 /// Linearizes one step of `dt` about the pendulum's state and a torque, N m, which is constant
@@ -15,8 +16,8 @@ use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
 /// step.
 ///
 /// ```
-/// use acrobot::physics::Pendulum;
 /// use acrobot::control::linearize_step;
+/// use acrobot::physics::Pendulum;
 /// use acrobot::{Params, Portable, State};
 ///
 /// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
@@ -36,71 +37,125 @@ pub fn linearize_step<A: Arithmetic>(
     torque: A::Scalar,
 ) -> Result<LinearModel<A::Scalar>, ControlError> {
     check_torque(torque)?;
-    let model = pendulum.model();
-    let common = &model.constants;
-    let (half, dt, sixth) = (common.half_dt, model.params.dt, common.sixth_dt);
-    let third = sixth + sixth;
-    let [by1, by2, by3, by4] = identity();
-    let before = Sensitive {
-        y: pendulum.state().into(),
-        columns: [by1, by2, by3, by4, [A::Scalar::ZERO; 4]],
-    };
-    let mut k = rates::<A>(model, &before, pendulum.sin_cos(), torque);
-    let mut after = before.plus_scaled(sixth, &k);
-    // The other stages of the Runge-Kutta step.
-    for (h, weight) in [(half, third), (half, third), (dt, sixth)] {
-        let x = before.plus_scaled(h, &k);
-        let [theta1, theta2, ..] = x.y;
-        k = rates::<A>(model, &x, [theta1, theta2].map(A::sin_cos_near), torque);
-        after = after.plus_scaled(weight, &k);
-    }
-    let [columns @ .., b] = after.columns;
-    let a = transpose(&columns);
-    let model = LinearModel { a, b };
+    let y = pendulum.state().into();
+    let [columns @ .., b] =
+        derivatives::<A, false>(pendulum.model(), y, pendulum.sin_cos(), torque);
+    let model = LinearModel { a: transpose(&columns), b };
     check_finite("a", model.a.as_flattened())?;
     check_finite("b", &model.b)?;
     Ok(model)
 }
 
-/// A state, and its derivatives by the four numbers of an earlier state and by the torque.
-#[derive(Clone, Copy)]
-struct Sensitive<S> {
-    y: [S; 4],
-    columns: [[S; 4]; 5],
+/// The columns of A, and B. `IN_LANES` inlines all, for a loop over lanes.
+///
+/// A Runge-Kutta step of the equations of motion and of their variational equations: columns of
+/// derivatives by the four numbers of the state before the step and by the torque.
+#[inline(always)]
+pub(super) fn derivatives<A: Arithmetic, const IN_LANES: bool>(
+    model: &Model<A::Scalar>,
+    y: [A::Scalar; 4],
+    sin_cos: [SinCos<A::Scalar>; 2],
+    torque: A::Scalar,
+) -> [[A::Scalar; 4]; 5] {
+    let common = &model.constants;
+    let (half, dt, sixth) = (common.half_dt, model.params.dt, common.sixth_dt);
+    let third = sixth + sixth;
+    let [o, one] = [A::Scalar::ZERO, A::Scalar::ONE];
+    let before = [[one, o, o, o], [o, one, o, o], [o, o, one, o], [o, o, o, one], [o, o, o, o]];
+    let ([ddtheta1, ddtheta2], [by1, by2, by3, by4, by_torque]) =
+        rates::<A, IN_LANES>(model, y, sin_cos, torque);
+    let k = [y[2], y[3], ddtheta1, ddtheta2];
+    let slopes = [
+        [o, o, by1[0], by1[1]],
+        [o, o, by2[0], by2[1]],
+        [one, o, by3[0], by3[1]],
+        [o, one, by4[0], by4[1]],
+        [o, o, by_torque[0], by_torque[1]],
+    ];
+    let after = add(before, sixth, slopes);
+
+    let stages = Stages { k, slopes, after };
+    let stages = stages.next::<A, IN_LANES>(model, &before, y, torque, half, third);
+    let stages = stages.next::<A, IN_LANES>(model, &before, y, torque, half, third);
+    stages.next::<A, IN_LANES>(model, &before, y, torque, dt, sixth).after
 }
 
-impl<S: Real> Sensitive<S> {
-    /// self + h k.
-    fn plus_scaled(mut self, h: S, k: &Self) -> Self {
-        self.y = plus_scaled(self.y, h, k.y);
-        for (column, k) in self.columns.iter_mut().zip(k.columns) {
-            *column = plus_scaled(*column, h, k);
+/// A stage of the Runge-Kutta step: the rates of the state, those of the columns, and the sum of
+/// the columns.
+struct Stages<S> {
+    k: [S; 4],
+    slopes: [[S; 4]; 5],
+    after: [[S; 4]; 5],
+}
+
+impl<S: Real> Stages<S> {
+    /// The next stage, h after the first.
+    #[inline(always)]
+    fn next<A: Arithmetic<Scalar = S>, const IN_LANES: bool>(
+        self,
+        model: &Model<S>,
+        before: &[[S; 4]; 5],
+        y: [S; 4],
+        torque: S,
+        h: S,
+        weight: S,
+    ) -> Self {
+        let x = plus_scaled(y, h, self.k);
+        let sin_cos = [sin_cos_near::<A, IN_LANES>(x[0]), sin_cos_near::<A, IN_LANES>(x[1])];
+        let ([ddtheta1, ddtheta2], [by1, by2, by3, by4, by_torque]) =
+            rates::<A, IN_LANES>(model, x, sin_cos, torque);
+        let rows = [[by1[0], by2[0], by3[0], by4[0]], [by1[1], by2[1], by3[1], by4[1]]];
+        let mut slopes = add(*before, h, self.slopes);
+        for x in &mut slopes {
+            *x = [x[2], x[3], dot(rows[0], *x), dot(rows[1], *x)];
         }
-        self
+        let [.., column] = &mut slopes;
+        column[2] = column[2] + by_torque[0];
+        column[3] = column[3] + by_torque[1];
+        Self { k: [x[2], x[3], ddtheta1, ddtheta2], slopes, after: add(self.after, weight, slopes) }
     }
 }
 
-/// The equations of motion with their variational equations. A Runge-Kutta step of both gives the
-/// state after a step and its exact derivatives. `sin_cos` are the sines and cosines of θ1 and θ2.
-#[inline(never)] // saves flash: it is called in two places
-fn rates<A: Arithmetic>(
+/// x + h y.
+#[inline(always)]
+fn add<S: Real>(mut x: [[S; 4]; 5], h: S, y: [[S; 4]; 5]) -> [[S; 4]; 5] {
+    for (x, y) in x.iter_mut().zip(y) {
+        *x = plus_scaled(*x, h, y);
+    }
+    x
+}
+
+/// The accelerations and their derivatives.
+type Rates<S> = ([S; 2], [[S; 2]; 5]);
+
+#[inline(always)]
+fn rates<A: Arithmetic, const IN_LANES: bool>(
     model: &Model<A::Scalar>,
-    x: &Sensitive<A::Scalar>,
+    y: [A::Scalar; 4],
     sin_cos: [SinCos<A::Scalar>; 2],
     torque: A::Scalar,
-) -> Sensitive<A::Scalar> {
-    let ([ddtheta1, ddtheta2], [by_state @ .., by_torque]) =
-        partials::<A>(model, x.y, sin_cos, torque);
-    let [_, _, dtheta1, dtheta2] = x.y;
-    let y = [dtheta1, dtheta2, ddtheta1, ddtheta2];
-    let ddtheta1 = by_state.map(|[ddtheta1, _]| ddtheta1);
-    let ddtheta2 = by_state.map(|[_, ddtheta2]| ddtheta2);
-    let mut columns = x.columns.map(|x| {
-        let [_, _, dtheta1, dtheta2] = x;
-        [dtheta1, dtheta2, dot(ddtheta1, x), dot(ddtheta2, x)]
-    });
-    let [.., [_, _, ddtheta1, ddtheta2]] = &mut columns;
-    *ddtheta1 = *ddtheta1 + by_torque[0];
-    *ddtheta2 = *ddtheta2 + by_torque[1];
-    Sensitive { y, columns }
+) -> Rates<A::Scalar> {
+    #[inline(never)] // saves flash
+    fn out_of_line<A: Arithmetic>(
+        model: &Model<A::Scalar>,
+        y: [A::Scalar; 4],
+        sin_cos: [SinCos<A::Scalar>; 2],
+        torque: A::Scalar,
+    ) -> Rates<A::Scalar> {
+        partials::<A>(model, y, sin_cos, torque)
+    }
+    match IN_LANES {
+        true => partials::<A>(model, y, sin_cos, torque),
+        false => out_of_line::<A>(model, y, sin_cos, torque),
+    }
+}
+
+/// Sine and cosine by the code for a single number, or by that for lanes, which has no branch.
+#[inline(always)]
+pub(super) fn sin_cos_near<A: Arithmetic, const IN_LANES: bool>(x: A::Scalar) -> SinCos<A::Scalar> {
+    if !IN_LANES {
+        return A::sin_cos_near(x);
+    }
+    let (sin, cos) = A::sin_cos_near(Lanes([x]));
+    (sin.lane(0), cos.lane(0))
 }

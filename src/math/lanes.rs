@@ -212,3 +212,65 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
         Self(numbers)
     }
 }
+
+/// Numbers that can be read one by one.
+///
+/// A loop over the lanes around code for one number vectorizes however long that code is. Of
+/// operations with [`Lanes`], LLVM keeps the results in memory where the code is long.
+pub(crate) trait Lanewise<S: Real>: Numbers<S> {
+    /// A value for each lane.
+    type Each<T: Copy + fmt::Debug>: AsRef<[T]> + AsMut<[T]>;
+
+    /// The number of lanes.
+    const N: usize;
+
+    /// `x` for each lane.
+    fn each<T: Copy + fmt::Debug>(x: T) -> Self::Each<T>;
+
+    /// The number of lane `i`, which must be below `N`.
+    fn lane(&self, i: usize) -> S;
+
+    /// Sets the number of lane `i`, which must be below `N`.
+    fn set_lane(&mut self, i: usize, x: S);
+}
+
+impl<S: Real> Lanewise<S> for S {
+    type Each<T: Copy + fmt::Debug> = [T; 1];
+    const N: usize = 1;
+
+    #[inline(always)]
+    fn each<T: Copy + fmt::Debug>(x: T) -> [T; 1] {
+        [x]
+    }
+
+    #[inline(always)]
+    fn lane(&self, _: usize) -> S {
+        *self
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, _: usize, x: S) {
+        *self = x;
+    }
+}
+
+#[expect(clippy::indexing_slicing, reason = "the callers' loops end below N")]
+impl<S: Real, const N: usize> Lanewise<S> for Lanes<S, N> {
+    type Each<T: Copy + fmt::Debug> = [T; N];
+    const N: usize = N;
+
+    #[inline(always)]
+    fn each<T: Copy + fmt::Debug>(x: T) -> [T; N] {
+        [x; N]
+    }
+
+    #[inline(always)]
+    fn lane(&self, i: usize) -> S {
+        self.0[i]
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, i: usize, x: S) {
+        self.0[i] = x;
+    }
+}

@@ -2,6 +2,8 @@
 //! digits, recorded by `tests/data/control.py`.
 
 mod balance;
+mod planner;
+mod recovery;
 mod regulators;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};

@@ -1,9 +1,9 @@
 //! A plan for Gymnasium's acrobot with a strong motor, and a digest of it and of following it.
 
+use acrobot::control::{Knot, NoPlan, Planner};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, State};
-use controller::{NoPlan, Planner, Step};
 
 use crate::Digest;
 
@@ -12,10 +12,10 @@ pub const LIMIT: f32 = 7.0;
 /// Its decisions per second.
 pub const RATE: u32 = 100;
 /// 50 kB.
-pub type Memory = [Step<f32>; 1250];
+pub type Memory = [Knot<f32>; 1250];
 
 pub const fn empty() -> Memory {
-    [Step::EMPTY; 1250]
+    [Knot::EMPTY; 1250]
 }
 
 /// Gymnasium's parameters, with so many decisions per second.
@@ -24,13 +24,13 @@ pub fn params(rate: u32) -> Params<f32> {
 }
 
 /// Plans from hanging at rest, with a largest torque, N m, and decisions per second.
-pub fn plan(limit: f32, rate: u32, memory: &mut Memory) -> Result<&mut [Step<f32>], NoPlan> {
+pub fn plan(limit: f32, rate: u32, memory: &mut Memory) -> Result<&mut [Knot<f32>], NoPlan> {
     let mut planner = Planner::<Fast>::new(params(rate), limit)?;
     planner.plan(State::HANGING, 64, &mut Pcg64::new(1), memory)
 }
 
 /// A digest of every bit of the plan, and of the states of an acrobot that follows it.
-pub fn digest(plan: &[Step<f32>]) -> u64 {
+pub fn digest(plan: &[Knot<f32>]) -> u64 {
     let mut digest = Digest::default();
     let mut acrobot = Acrobot::<Fast>::new(0);
     let set = acrobot.set_params(params(RATE));

@@ -13,12 +13,11 @@
 
 use core::cell::RefCell;
 
-use acrobot::control::{ControlError, difference};
+use acrobot::control::{ControlError, Knot, Planner, difference};
 use acrobot::physics::saturate;
 use acrobot::{Acrobot, Error, Fast, Params, State};
 use acrobot_cortex_m::ram;
 use bits::plan;
-use controller::{Controller, Step};
 use cortex_m::Peripherals;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{SCB, SYST};
@@ -70,7 +69,7 @@ static EPISODE: Mutex<RefCell<Option<Episode>>> = Mutex::new(RefCell::new(None))
 
 struct Episode {
     machine: Acrobot<Fast>,
-    controller: Controller,
+    planner: Planner<Fast>,
     motor: Motor,
     ticks: u32,
     /// The ticks for which each angle has been within 0.1 rad of upright, and the largest of these
@@ -87,12 +86,12 @@ impl Episode {
         self.held == HELD * self.motor.rate || self.ticks == MOST * self.motor.rate
     }
 
-    fn tick(&mut self, plan: &[Step<f32>]) -> Result<(), Error> {
+    fn tick(&mut self, plan: &[Knot<f32>]) -> Result<(), Error> {
         let before = SYST::get_current();
         let state = self.machine.state();
         let torque = match plan.get(self.ticks as usize) {
             Some(step) => saturate(step.follow(state), self.motor.limit),
-            None => self.controller.decide(state)?,
+            None => self.planner.decide(state)?,
         };
         // The counter counts down, and begins again from the period.
         let took = (before + PERIOD - SYST::get_current()) % PERIOD;
@@ -181,7 +180,7 @@ fn make_plan(motor: Motor) {
 fn run(next_tick: fn(), motor: Motor, name: &str, episodes: u32) -> Result<u32, ControlError> {
     let rate = motor.rate;
     let params = Params { torque_noise: DISTURBANCE, ..plan::params(rate) };
-    let controller = Controller::new(params, motor.limit)?;
+    let planner = Planner::new(params, motor.limit)?;
     let (mut uncaught, mut ticks, mut caught, mut longest) = (0, 0, 0, 0);
     let (mut error, mut counts, mut slowest) = (0_f32, 0, 0);
     for seed in 0..episodes {
@@ -189,7 +188,7 @@ fn run(next_tick: fn(), motor: Motor, name: &str, episodes: u32) -> Result<u32, 
         machine.set_params(params)?;
         let episode = Episode {
             machine,
-            controller: controller.clone(),
+            planner: planner.clone(),
             motor,
             ticks: 0,
             held: 0,

@@ -13,9 +13,7 @@ use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
-use acrobot::control::{
-    difference, inverse_dynamics, linearize, linearize_step, lqr, regulator, velocities,
-};
+use acrobot::control::{Cost, Knot, Planner, difference, inverse_dynamics, linearize, linearize_step, lqr, regulator, velocities};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
@@ -23,7 +21,6 @@ use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use bits::training;
-use controller::{Controller, Planner, Step};
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
@@ -53,7 +50,8 @@ fn main() -> ! {
         batch::<Fast, Gymnasium, 20, 16>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20], own, draws));
         numbers();
         learners();
-        controller();
+        planner::<Fast>();
+        planner::<Damped<Portable>>();
         policy();
     }
 }
@@ -239,18 +237,12 @@ fn learners() {
     black_box(training::digest(&learner));
 }
 
-fn controller() {
-    if let Ok(mut controller) = Controller::new(params(), number()) {
-        let _ = black_box(controller.decide(state()));
-    }
-    planner::<Fast>();
-    planner::<Damped<Portable>>();
-}
-
 fn planner<A: Arithmetic>() {
-    let mut memory = black_box([Step::EMPTY; 20]);
+    let mut memory = black_box([Knot::EMPTY; 20]);
     let mut rng = Pcg64::new(black_box(42));
-    if let Ok(mut planner) = Planner::<A>::new(params(), number()) {
+    let cost = Cost { torque_change: number(), ..Cost::new(&params()) };
+    if let Ok(mut planner) = Planner::<A>::with_cost(params(), number(), cost) {
+        let _ = black_box(planner.decide(state()));
         let _ = black_box(planner.improve(state(), black_box(10), &mut memory));
         if let Ok(plan) = planner.plan(state(), black_box(10), &mut rng, &mut memory) {
             black_box(planner.follow(plan, black_box(3), state()));

@@ -7,11 +7,11 @@
 
 use std::path::PathBuf;
 
+use acrobot::control::{Knot, Planner};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 use clap::Parser;
-use controller::{Planner, Step};
 use desktop::{animation, bang_bang, write};
 
 /// Draws an episode as an animated SVG, about three times as fast as real time.
@@ -79,7 +79,7 @@ fn balance(rng: Pcg64) -> anyhow::Result<Vec<State>> {
     // As in the firmware with a largest torque of 2 N m.
     let params = Params { dt: 0.01, torque_noise: 0.5, ..Params::DEFAULT };
     let mut planner = Planner::<Fast>::new(params, 1.5)?;
-    let mut memory = [Step::EMPTY; 1250];
+    let mut memory = [Knot::EMPTY; 1250];
     let plan = planner.plan(State::HANGING, 64, &mut Pcg64::new(1), &mut memory)?;
     let mut machine = Acrobot::<Fast>::with_rng(rng);
     machine.set_params(params)?;

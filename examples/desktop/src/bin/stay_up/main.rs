@@ -17,13 +17,12 @@ mod search;
 use std::ops::Range;
 
 use acrobot::arithmetic::Arithmetic;
-use acrobot::control::difference;
+use acrobot::control::{Knot, NoPlan, Planner, difference};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::saturate;
 use acrobot::task::Task;
 use acrobot::{Acrobot, Fast, Params, State};
 use clap::Parser;
-use controller::{NoPlan, Planner, Step};
 use rayon::prelude::*;
 use search::Search;
 
@@ -69,7 +68,7 @@ impl Episode {
     fn play<A: Arithmetic<Scalar = f32>, T: Task>(
         mut acrobot: Acrobot<A, T>,
         planner: &Planner<A>,
-        plan: &[Step<f32>],
+        plan: &[Knot<f32>],
         limit: f32,
         steps: usize,
     ) -> anyhow::Result<Self> {
@@ -122,9 +121,9 @@ fn gymnasium(seed: u64) -> anyhow::Result<Episode> {
     let params = Params { dt: 1.0 / RATE as f32, ..Params::DEFAULT };
     let acrobot = Acrobot::<Fast>::with_params(seed, params)?;
     let mut planner = Planner::<Fast>::new(params, GYMNASIUM)?;
-    let mut memory = [Step::EMPTY; STEPS];
+    let mut memory = [Knot::EMPTY; STEPS];
     let found = planner.plan(acrobot.state(), TRIES, &mut Pcg64::new(seed), &mut memory);
-    let plan: &[Step<f32>] = match found {
+    let plan: &[Knot<f32>] = match found {
         Ok(plan) => plan,
         Err(NoPlan::NotFound { .. }) => &[],
         Err(error) => return Err(error.into()),

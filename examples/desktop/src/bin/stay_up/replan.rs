@@ -5,10 +5,10 @@
 use std::array::from_fn;
 use std::time::{Duration, Instant};
 
+use acrobot::control::Knot;
 use acrobot::numpy::uniform;
 use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, State};
-use controller::Step;
 use rayon::prelude::*;
 
 use crate::observer::Observer;
@@ -18,7 +18,7 @@ use crate::{Episode, GYMNASIUM, LENGTHS, RATE, STEPS, SWINGUP};
 /// The part of the motor's torque that plans use. The rest corrects deviations.
 const PLANNED: f32 = 0.95;
 /// Upright steps at the end of a plan, so that the approach, too, is planned again.
-const UPRIGHT: [Step<f32>; 80] = [Step::open(0.0); 80];
+const UPRIGHT: [Knot<f32>; 80] = [Knot::open(0.0); 80];
 
 /// The largest error of masses and lengths, and noise of angles, rad, and of velocities, rad/s.
 type Case = (f64, [f64; 2]);

@@ -7,11 +7,11 @@
 use std::ops::Range;
 
 use acrobot::arithmetic::Damped;
+use acrobot::control::{Knot, Planner};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::saturate;
 use acrobot::task::Swingup;
 use acrobot::{Acrobot, Fast, Params, State};
-use controller::{Planner, Step};
 
 use crate::Episode;
 
@@ -30,7 +30,7 @@ const WINDOW: usize = 30;
 const AGAIN: u32 = 12;
 const TRIES: usize = 4;
 
-pub type Plan = Vec<Step<f32>>;
+pub type Plan = Vec<Knot<f32>>;
 
 /// The search for the best plan from a state.
 #[derive(Clone)]
@@ -66,7 +66,7 @@ impl Search {
     }
 
     fn guess(&mut self) -> anyhow::Result<Plan> {
-        let mut plan = vec![Step::EMPTY; self.draw(self.lengths.start, self.lengths.end)];
+        let mut plan = vec![Knot::EMPTY; self.draw(self.lengths.start, self.lengths.end)];
         self.planner.guess(self.acrobot.state(), &mut self.rng, &mut plan)?;
         Ok(plan)
     }
@@ -77,7 +77,7 @@ impl Search {
     }
 
     /// A changed copy of a plan.
-    fn change(&mut self, plan: &[Step<f32>]) -> Plan {
+    fn change(&mut self, plan: &[Knot<f32>]) -> Plan {
         let mut torques: Vec<f32> = plan.iter().map(|step| step.torque).collect();
         let end = self.draw(1, torques.len() + 1);
         let window = end - self.draw(1, WINDOW + 1).min(end)..end;
@@ -94,7 +94,7 @@ impl Search {
                 torques.splice(end..end, again);
             }
         }
-        torques.into_iter().map(Step::open).collect()
+        torques.into_iter().map(Knot::open).collect()
     }
 
     /// The best plan of a part of the search.

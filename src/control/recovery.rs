@@ -7,12 +7,16 @@
 
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::control::{ControlError, LinearModel, Lqr, difference, linearize_step, lqr};
-use acrobot::physics::{Pendulum, State, saturate};
-use acrobot::{Error, Params};
-
-use crate::{dot, identity, plus};
+use super::deviation::difference;
+use super::error::ControlError;
+use super::linearize::LinearModel;
+use super::linearize_step::linearize_step;
+use super::lqr::{Lqr, lqr};
+use super::matrix::{Matrix, dot, identity};
+use crate::arithmetic::Arithmetic;
+use crate::error::Range;
+use crate::math::Real;
+use crate::physics::{Params, Pendulum, State, plus_scaled, saturate};
 
 /// The regulator has failed beyond these deviations of θ1 and θ2, rad.
 const WIDE: [f64; 2] = [FRAC_PI_2, 3.1];
@@ -23,12 +27,14 @@ const LONGEST: f64 = 4.0;
 
 /// A regulator whose torque is bounded.
 #[derive(Clone, Debug)]
-pub(crate) struct Recovery<S> {
-    pub(crate) regulator: Lqr<S>,
-    /// The largest torque of the regulator, N m.
-    pub(crate) limit: S,
+pub(super) struct Recovery<S> {
+    pub(super) regulator: Lqr<S>,
+    /// The largest torque, N m.
+    pub(super) limit: S,
     /// F: where |F x| is below 1, the regulator succeeds.
     factor: [[S; 4]; 4],
+    /// xᵀ P x at the end of a plan, from which on `arrival` grows slowly.
+    near: S,
     /// The steps of `LONGEST`.
     steps: u32,
 }
@@ -40,19 +46,11 @@ impl<S: Real> Recovery<S> {
     /// # Errors
     ///
     /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
-    #[inline(never)] // saves flash: the planner and the controller call it
-    pub(crate) fn new<A: Arithmetic<Scalar = S>>(
+    pub(super) fn new<A: Arithmetic<Scalar = S>>(
         params: Params<S>,
         limit: S,
     ) -> Result<Self, ControlError> {
-        if !(limit > S::ZERO && limit.is_finite()) {
-            return Err(ControlError::Invalid(Error::OutOfRange {
-                name: "the largest torque",
-                value: limit.to_f64(),
-                unit: "N m",
-                rule: "finite and above 0",
-            }));
-        }
+        Range::AboveZero.check("the largest torque", limit.to_f64(), "N m")?;
         let machine = Pendulum::<A>::new(params, State::UPRIGHT)?;
         let LinearModel { a, b } = linearize_step(&machine, S::ZERO)?;
         let model = LinearModel { a: a.map(|row| row.map(S::to_f64)), b: b.map(S::to_f64) };
@@ -66,23 +64,26 @@ impl<S: Real> Recovery<S> {
         let most = limit.to_f64() / largest(&factor, exact.gain);
         let safe = (most * SQRT_2).min(LINEAR / largest(&factor, [1.0, 0.0, 0.0, 0.0]));
         let factor = factor.map(|row| row.map(|x| S::from_f64(x / safe)));
+        let near = S::from_f64(safe * safe);
         let steps = (LONGEST / params.dt.to_f64()) as u32;
-        Ok(Self { regulator, limit, factor, steps })
+        Ok(Self { regulator, limit, factor, near, steps })
     }
 
-    /// Whether the regulator succeeds from the model's state. Simulates at most so many steps.
+    /// Whether the regulator succeeds from the model's state, without a velocity at its bound.
+    /// Simulates at most so many steps.
     ///
     /// A plan can end inside the ellipsoid where the linear model does not hold, and leave it. So
     /// the simulation has to stay inside for a sixteenth of the longest time.
-    pub(crate) fn succeeds<A: Arithmetic<Scalar = S>>(
+    pub(super) fn succeeds<A: Arithmetic<Scalar = S>>(
         &self,
         mut model: Pendulum<A>,
+        bounds: [S; 2],
         most: u32,
     ) -> bool {
         let mut inside = 0;
         for _ in 0..most.min(self.steps) {
             let x = difference(model.state(), State::UPRIGHT);
-            if !is_near(x) {
+            if !(is_near(x) && is_below(model.state(), bounds)) {
                 return false;
             }
             let torque = self.torque(x);
@@ -99,20 +100,43 @@ impl<S: Real> Recovery<S> {
     }
 
     /// The torque for a deviation, N m.
-    pub(crate) fn torque(&self, x: [S; 4]) -> S {
+    pub(super) fn torque(&self, x: [S; 4]) -> S {
         saturate(self.regulator.torque(x), self.limit)
     }
 
-    /// xᵀ P x: what the regulator would cost from a deviation on.
-    pub(crate) fn cost(&self, x: [S; 4]) -> S {
-        dot(self.regulator.cost_to_go.map(|row| dot(row, x)), x)
+    /// What the state after a plan costs, with a weight.
+    pub(super) fn arrival(&self, weight: S, end: [S; 4]) -> S {
+        let x = difference(end.into(), State::UPRIGHT);
+        let excess = dot(self.apply(x), x) / self.near;
+        weight * S::from_f64(libm::log1p(excess.to_f64()))
+    }
+
+    /// The slope and the curvature of [`arrival`](Self::arrival). Where the logarithm is concave,
+    /// the curvature is that without it.
+    #[inline(always)]
+    pub(super) fn arrival_slopes(&self, weight: S, end: [S; 4]) -> ([S; 4], Matrix<S>) {
+        let x = difference(end.into(), State::UPRIGHT);
+        let p_x = self.apply(x);
+        let weight = (weight + weight) / (dot(p_x, x) + self.near);
+        (p_x.map(|x| x * weight), self.regulator.cost_to_go.map(|row| row.map(|x| x * weight)))
+    }
+
+    /// P x.
+    #[inline(always)]
+    fn apply(&self, x: [S; 4]) -> [S; 4] {
+        self.regulator.cost_to_go.map(|row| dot(row, x))
     }
 }
 
 /// Whether the regulator has not failed.
-pub(crate) fn is_near<S: Real>([theta1, theta2, ..]: [S; 4]) -> bool {
+pub(super) fn is_near<S: Real>([theta1, theta2, ..]: [S; 4]) -> bool {
     let [most1, most2] = WIDE;
     theta1.to_f64().abs() < most1 && theta2.to_f64().abs() < most2
+}
+
+/// Whether both velocities are below their bounds.
+pub(super) fn is_below<S: Real>(state: State<S>, [bound1, bound2]: [S; 2]) -> bool {
+    state.dtheta1.abs() < bound1 && state.dtheta2.abs() < bound2
 }
 
 /// U with P = Uᵀ U for a symmetric, positive definite P.
@@ -121,7 +145,7 @@ fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
         let root = Real::sqrt(p[i][i]);
         let row = p[i].map(|x| x / root);
         for (other, x) in p.iter_mut().zip(row) {
-            *other = plus(*other, -x, row);
+            *other = plus_scaled(*other, -x, row);
         }
         row
     })
@@ -131,7 +155,7 @@ fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
 fn largest(u: &[[f64; 4]; 4], mut k: [f64; 4]) -> f64 {
     let y = [0, 1, 2, 3].map(|i| {
         let y = k[i] / u[i][i];
-        k = plus(k, -y, u[i]);
+        k = plus_scaled(k, -y, u[i]);
         y
     });
     Real::sqrt(dot(y, y))

@@ -1,12 +1,9 @@
-//! The SIMD instructions that a step of a batch uses.
+//! SIMD instructions that are detected at run time.
 
-use super::work::Work;
-use crate::arithmetic::Arithmetic;
-use crate::task::Task;
-
-/// The SIMD instructions that a step of a [`Batch`](super::Batch) uses. They change no bit.
+/// The SIMD instructions that a step of a [`Batch`](crate::batch::Batch) or a
+/// [search](crate::control::Planner::search) uses. They change no bit.
 ///
-/// With the `std` feature on x86-64 a batch takes the widest that the machine has. Elsewhere there
+/// With the `std` feature on x86-64 they are the widest that the machine has. Elsewhere there
 /// is only the baseline, such as WASM's simd128 or NEON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -18,6 +15,13 @@ pub enum SimdLevel {
     Avx2,
     /// AVX-512 with its extensions F, BW, DQ and VL: sixteen `f32` at once.
     Avx512,
+}
+
+/// A loop over lanes.
+pub(crate) trait Kernel {
+    /// Must be `#[inline(always)]`, and so must be what it calls: a function out of line may not use
+    /// the SIMD instructions of its caller.
+    fn run<const AVX512: bool>(self);
 }
 
 impl SimdLevel {
@@ -49,15 +53,15 @@ impl SimdLevel {
         }
     }
 
-    /// Steps all blocks, with the baseline if the machine does not have this level.
+    /// Runs a kernel, with the baseline if the machine does not have this level.
     #[allow(unsafe_code, reason = "the one place with instructions that the build does not assume")]
     // Inlined where there is one level, so that kernels which a program does not use are omitted.
     #[cfg_attr(not(all(feature = "std", target_arch = "x86_64")), inline(always))]
-    pub(super) fn step<A: Arithmetic, T: Task, const N: usize>(self, work: Work<'_, A, T, N>) {
+    pub(crate) fn run<K: Kernel>(self, kernel: K) {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         {
             #[target_feature(enable = "avx2")]
-            fn with_avx2<A: Arithmetic, T: Task, const N: usize>(work: Work<'_, A, T, N>) {
+            fn with_avx2<K: Kernel>(kernel: K) {
                 /// On the stack it aligns spilled registers. Without it they cross cache lines in
                 /// every second process, because a stack begins at a random multiple of 16, and a
                 /// step takes 25 % longer.
@@ -66,39 +70,21 @@ impl SimdLevel {
                     _byte: u8,
                 }
                 std::hint::black_box(Aligned { _byte: 0 });
-                work.step::<false>();
+                kernel.run::<false>();
             }
             #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-            fn with_avx512<A: Arithmetic, T: Task, const N: usize>(work: Work<'_, A, T, N>) {
-                work.step::<true>();
+            fn with_avx512<K: Kernel>(kernel: K) {
+                kernel.run::<true>();
             }
             // SAFETY: the machine has the features that the function was compiled for.
             unsafe {
                 match self {
-                    Self::Avx2 if self.is_available() => return with_avx2(work),
-                    Self::Avx512 if self.is_available() => return with_avx512(work),
+                    Self::Avx2 if self.is_available() => return with_avx2(kernel),
+                    Self::Avx512 if self.is_available() => return with_avx512(kernel),
                     _ => {}
                 }
             }
         }
-        work.step::<false>();
-    }
-
-    /// As [`step`](Self::step), on all cores: halves the blocks until a task is too small to share.
-    #[cfg(feature = "rayon")]
-    pub(super) fn par_step<A: Arithmetic, T: Task, const N: usize>(
-        self,
-        mut work: Work<'_, A, T, N>,
-    ) {
-        // Both are about 100 µs of work: waking a thread takes 10 µs.
-        let acrobots_of_a_task = match size_of::<A::Scalar>() {
-            4 => 16_384,
-            _ => 1024,
-        };
-        if work.blocks.len() * N <= acrobots_of_a_task {
-            return self.step(work);
-        }
-        let first = work.take(work.blocks.len() / 2);
-        rayon::join(|| self.par_step(first), || self.par_step(work));
+        kernel.run::<false>();
     }
 }

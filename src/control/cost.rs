@@ -1,0 +1,204 @@
+//! What a plan costs.
+
+use crate::error::{Error, Range};
+use crate::math::{Real, SinCos};
+use crate::physics::{Params, positions};
+
+/// The weights of what a plan costs: the sum of all terms, over all its steps, and of its end. A
+/// larger weight makes its term smaller, at the expense of the others.
+///
+/// ```
+/// use acrobot::control::{Cost, Planner};
+/// use acrobot::{Fast, Params};
+///
+/// let params = Params { dt: 0.01, ..Params::SWINGUP };
+/// // Spares the motor: less energy, and no jumps of the torque.
+/// let cost = Cost { power: 0.5, torque_change: 1.0, ..Cost::new(&params) };
+/// let planner = Planner::<Fast>::with_cost(params, 2.0, cost);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Cost<S = f64> {
+    /// Of 2 − 2 cos x, for the deviation x of each angle from upright: x² where it is small. 1/s.
+    /// Raised, the links are upright for longer.
+    pub angles: [S; 2],
+    /// Of θ̇1² and θ̇2², s/rad². Raised, the acrobot swings more slowly.
+    pub velocities: [S; 2],
+    /// Of the square of the torque, 1/((N m)² s). Raised, the acrobot needs less of its motor, and
+    /// more time.
+    pub torque: S,
+    /// Of the square of the torque's change from one step to the next, 1/(N m)². Raised, the torque
+    /// is smoother.
+    pub torque_change: S,
+    /// Of the absolute value of the motor's power, 1/J. Raised, the motor does less work and brakes
+    /// less.
+    pub power: S,
+    /// Of the time that the tip is below `height`, 1/s. Raised, the acrobot is up earlier.
+    pub below: S,
+    /// The height of the tip above the fixed joint, m, from which on `below` costs nothing.
+    pub height: S,
+    /// `below` costs half where the tip is so far below `height`, m; above 0.
+    pub margin: S,
+    /// Of ln(1 + e), where e is 1 for an end that the regulator surely holds. Raised, more plans
+    /// end there.
+    pub arrival: S,
+}
+
+/// The power, W, within which its absolute value is smooth.
+const SMOOTH: f64 = 0.1;
+/// What a velocity beyond its bound costs, s/rad².
+const BEYOND: f64 = 10.0;
+
+impl<S: Real> Cost<S> {
+    /// Weights with which most tries of a swing-up succeed: the acrobot gets up early, with little
+    /// torque. The height is that of the upright tip, the margin a tenth of it.
+    pub fn new(params: &Params<S>) -> Self {
+        let height = params.length1 + params.length2;
+        Self {
+            angles: [S::ZERO; 2],
+            velocities: [S::ZERO; 2],
+            torque: S::from_f64(0.1),
+            torque_change: S::ZERO,
+            power: S::ZERO,
+            below: S::from_f64(2.0),
+            height,
+            margin: height * S::from_f64(0.1),
+            arrival: S::from_f64(20.0),
+        }
+    }
+
+    /// Checks that all weights are finite and at least 0, and the margin above 0.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let [angle1, angle2] = self.angles;
+        let [velocity1, velocity2] = self.velocities;
+        for (name, weight, unit) in [
+            ("angles", angle1, "per s"),
+            ("angles", angle2, "per s"),
+            ("velocities", velocity1, "s/rad²"),
+            ("velocities", velocity2, "s/rad²"),
+            ("torque", self.torque, "per (N m)² s"),
+            ("torque_change", self.torque_change, "per (N m)²"),
+            ("power", self.power, "per J"),
+            ("below", self.below, "per s"),
+            ("arrival", self.arrival, "of ln(1 + e)"),
+        ] {
+            Range::AtLeastZero.check(name, weight.to_f64(), unit)?;
+        }
+        Range::Finite.check("height", self.height.to_f64(), "m")?;
+        Range::AboveZero.check("margin", self.margin.to_f64(), "m")
+    }
+}
+
+/// The weights for one step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Weights<S> {
+    cost: Cost<S>,
+    /// Velocities that no plan may reach, rad/s, and what exceeding them costs, s²/rad².
+    pub(super) bounds: [S; 2],
+    beyond: S,
+}
+
+impl<S: Real> Weights<S> {
+    pub(super) fn new(cost: Cost<S>, dt: S, bounds: [S; 2]) -> Self {
+        let times = |[x, y]: [S; 2]| [x * dt, y * dt];
+        let cost = Cost {
+            angles: times(cost.angles),
+            velocities: times(cost.velocities),
+            torque: cost.torque * dt,
+            power: cost.power * dt,
+            below: cost.below * dt,
+            ..cost
+        };
+        Self { cost, bounds, beyond: dt * S::from_f64(BEYOND) }
+    }
+
+    /// The weights of the torque's change and of the arrival.
+    #[inline(always)]
+    pub(super) fn jump_and_arrival(&self) -> [S; 2] {
+        [self.cost.torque_change, self.cost.arrival]
+    }
+
+    /// What a step costs, without the change of the torque.
+    #[inline(always)]
+    pub(super) fn step(
+        &self,
+        params: &Params<S>,
+        [_, _, dtheta1, dtheta2]: [S; 4],
+        sin_cos: [SinCos<S>; 2],
+        torque: S,
+    ) -> S {
+        let [(_, cos1), (_, cos2)] = sin_cos;
+        let cost = &self.cost;
+        let [angle1, angle2] = cost.angles;
+        let [velocity1, velocity2] = cost.velocities;
+        let [bound1, bound2] = self.bounds;
+        let two = S::from_f64(2.0);
+        let power = dtheta2 * torque;
+        let [_, [_, height]] = positions(params, sin_cos);
+        let depth = at_least_zero((cost.height - height) / cost.margin);
+        let square = depth * depth;
+        let beyond1 = at_least_zero(dtheta1.abs() - bound1);
+        let beyond2 = at_least_zero(dtheta2.abs() - bound2);
+        angle1 * (two + two * cos1)
+            + angle2 * (two - two * cos2)
+            + velocity1 * (dtheta1 * dtheta1)
+            + velocity2 * (dtheta2 * dtheta2)
+            + cost.torque * (torque * torque)
+            + cost.power * (power * power / (power.abs() + S::from_f64(SMOOTH)))
+            + cost.below * (square / (S::ONE + square))
+            + self.beyond * (beyond1 * beyond1 + beyond2 * beyond2)
+    }
+
+    /// The slopes of [`step`](Self::step) and its curvatures, where they are not negative: by the
+    /// state, and by the torque.
+    #[inline(always)]
+    pub(super) fn slopes(
+        &self,
+        params: &Params<S>,
+        [_, _, dtheta1, dtheta2]: [S; 4],
+        sin_cos: [SinCos<S>; 2],
+        torque: S,
+    ) -> ([[S; 2]; 4], [S; 2]) {
+        let cost = &self.cost;
+        let [(sin1, cos1), (sin2, cos2)] = sin_cos;
+        let [[angle1, angle2], [velocity1, velocity2]] =
+            [cost.angles, cost.velocities].map(|[x, y]| [x + x, y + y]);
+        let [bound1, bound2] = self.bounds;
+
+        let power = dtheta2 * torque;
+        let inverse = S::ONE / (power.abs() + S::from_f64(SMOOTH));
+        let by_power = cost.power * (power * inverse * (S::ONE + S::from_f64(SMOOTH) * inverse));
+        let weight = cost.power * inverse;
+
+        let [[elbow, _], [tip, height]] = positions(params, sin_cos);
+        let depth = at_least_zero((cost.height - height) / cost.margin);
+        let part = S::ONE / (S::ONE + depth * depth);
+        let by_height = -(cost.below * ((depth + depth) * (part * part)) / cost.margin);
+
+        let beyond = self.beyond + self.beyond;
+        let bounded = |velocity: S, bound: S| {
+            let (over, under) = (at_least_zero(velocity - bound), at_least_zero(-velocity - bound));
+            let curvature = if over + under > S::ZERO { beyond } else { S::ZERO };
+            [beyond * (over - under), curvature]
+        };
+        let [slope1, curvature1] = bounded(dtheta1, bound1);
+        let [slope2, curvature2] = bounded(dtheta2, bound2);
+        let by_state = [
+            [by_height * tip - angle1 * sin1, angle1 * at_least_zero(-cos1)],
+            [by_height * (tip - elbow) + angle2 * sin2, angle2 * at_least_zero(cos2)],
+            [velocity1 * dtheta1 + slope1, velocity1 + curvature1],
+            [
+                velocity2 * dtheta2 + slope2 + by_power * torque,
+                velocity2 + curvature2 + weight * (torque * torque),
+            ],
+        ];
+        let torque_slope = (cost.torque + cost.torque) * torque + by_power * dtheta2;
+        let torque_curvature = cost.torque + cost.torque + weight * (dtheta2 * dtheta2);
+        (by_state, [torque_slope, torque_curvature])
+    }
+}
+
+#[inline(always)]
+fn at_least_zero<S: Real>(x: S) -> S {
+    if x > S::ZERO { x } else { S::ZERO }
+}

@@ -1,0 +1,348 @@
+//! The two passes of an iteration: forward, a simulation of the plan with a part of its change, and
+//! backward, which finds the change. Of one plan, or of many side by side, a plan a lane.
+//!
+//! No lane reads another one, so a plan has the same bits alone and in any lane. The loops over
+//! lanes are around code for one number: see `math/lanes.rs`.
+
+use super::cost::Weights;
+use super::linearize_step::{derivatives, sin_cos_near};
+use super::matrix::dot;
+use super::plan::Knot;
+use super::recovery::Recovery;
+use crate::arithmetic::Arithmetic;
+use crate::math::sealed::Sealed as _;
+use crate::math::{Kernel, Lanewise, Real, SinCos};
+use crate::physics::{Model, State, plus_scaled, saturate, step, wrap};
+
+/// What the passes know of the machine.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Machine<'a, A: Arithmetic> {
+    pub(super) model: &'a Model<A::Scalar>,
+    pub(super) recovery: &'a Recovery<A::Scalar>,
+    pub(super) weights: &'a Weights<A::Scalar>,
+}
+
+/// How far each plan is simulated.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion<V> {
+    /// The state, and its sines and cosines.
+    pub(super) y: [V; 4],
+    pub(super) sin_cos: [SinCos<V>; 2],
+    /// The torques of the step before, now and in the plan.
+    pub(super) torque: V,
+    pub(super) planned: V,
+    pub(super) cost: V,
+}
+
+/// What a forward pass does with each plan.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Orders<V> {
+    /// The number of its knots.
+    pub(super) len: V,
+    /// The part of the change.
+    pub(super) part: V,
+    /// 1 if the new states and torques replace those of the plan, 0 otherwise.
+    pub(super) keep: V,
+}
+
+/// Simulates plans from the state of a motion. The motion becomes the state after each plan, and
+/// what the plan costs.
+pub(super) struct Forward<'a, A: Arithmetic, V> {
+    pub(super) machine: Machine<'a, A>,
+    pub(super) knots: &'a mut [Knot<V>],
+    pub(super) orders: &'a Orders<V>,
+    pub(super) motion: &'a mut Motion<V>,
+}
+
+impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Forward<'_, A, V> {
+    #[inline(always)]
+    fn run<const AVX512: bool>(self) {
+        let Machine { model, recovery, weights } = self.machine;
+        let (params, weights, limit) = (model.params, *weights, recovery.limit);
+        let [by_jump, arrival] = weights.jump_and_arrival();
+        let lanes_model = model.zip(model, |x, _| V::splat(x));
+        let orders = *self.orders;
+        let mut motion = *self.motion;
+        let (mut ends, mut costs) = (motion.y, motion.cost);
+        let mut index = A::Scalar::ZERO;
+        for knot in self.knots {
+            let mut kept = *knot;
+            let mut torques = motion.torque;
+            for i in 0..V::N {
+                let old = kept.lane(i);
+                let y = lanes(&motion.y, i);
+                let [x1, x2, x3, x4]: [A::Scalar; 4] = old.state.into();
+                let x = [wrap(y[0] - x1), wrap(y[1] - x2), y[2] - x3, y[3] - x4];
+                let before = motion.torque.lane(i);
+                let smooth = old.smooth * (before - motion.planned.lane(i));
+                let change = orders.part.lane(i) * old.change;
+                let torque = old.torque + change + (dot(old.gain, x) + smooth);
+                let torque = saturate(torque, limit);
+                let [sines1, sines2] = &motion.sin_cos;
+                let sin_cos = [pair(sines1, i), pair(sines2, i)];
+                // The first torque may be any.
+                let jump = if index > A::Scalar::ZERO { torque - before } else { A::Scalar::ZERO };
+                let step = weights.step(&params, y, sin_cos, torque);
+                let step = step + by_jump * (jump * jump);
+                motion.cost.set_lane(i, motion.cost.lane(i) + step);
+                motion.planned.set_lane(i, old.torque);
+                torques.set_lane(i, torque);
+                let keeps = orders.keep.lane(i) > A::Scalar::ZERO;
+                let keep = |new, old| if keeps { new } else { old };
+                let state =
+                    State::from([keep(y[0], x1), keep(y[1], x2), keep(y[2], x3), keep(y[3], x4)]);
+                kept.set_lane(i, Knot { state, torque: keep(torque, old.torque), ..old });
+            }
+            *knot = kept;
+            motion.torque = torques;
+            step::<A, V>(&lanes_model, &mut motion.y, &mut motion.sin_cos, torques);
+            index = index + A::Scalar::ONE;
+            for i in 0..V::N {
+                let is_end = index == orders.len.lane(i);
+                let pick = |new, old| if is_end { new } else { old };
+                for (end, y) in ends.iter_mut().zip(&motion.y) {
+                    end.set_lane(i, pick(y.lane(i), end.lane(i)));
+                }
+                costs.set_lane(i, pick(motion.cost.lane(i), costs.lane(i)));
+            }
+        }
+        for i in 0..V::N {
+            let arrival = recovery.arrival(arrival, lanes(&ends, i));
+            costs.set_lane(i, costs.lane(i) + arrival);
+        }
+        (self.motion.y, self.motion.cost) = (ends, costs);
+    }
+}
+
+/// Finds the change of each torque and its gains, from the last knot to the first.
+pub(super) struct Backward<'a, A: Arithmetic, V> {
+    pub(super) machine: Machine<'a, A>,
+    pub(super) knots: &'a mut [Knot<V>],
+    pub(super) len: V,
+    /// The states after the plans.
+    pub(super) ends: &'a [V; 4],
+    pub(super) damping: V,
+    /// The smallest divisor, which is not positive where the damping was too small.
+    pub(super) least: &'a mut V,
+}
+
+/// What the rest of a plan costs, about a knot: slopes and curvatures by the state before the knot,
+/// and by the torque before it.
+#[derive(Clone, Copy, Debug)]
+struct ToGo<V> {
+    slope: [V; 4],
+    /// The upper triangle, by rows.
+    curvature: [V; 10],
+    torque_slope: V,
+    torque_curvature: V,
+    both: [V; 4],
+}
+
+impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Backward<'_, A, V> {
+    #[inline(always)]
+    fn run<const AVX512: bool>(self) {
+        let Machine { model, recovery, weights } = self.machine;
+        let local = Local { model: *model, limit: recovery.limit, weights: *weights };
+        let [by_jump, arrival] = weights.jump_and_arrival();
+        let (len, dampings) = (self.len, self.damping);
+        let zero = V::splat(A::Scalar::ZERO);
+        let mut to_go = ToGo {
+            slope: [zero; 4],
+            curvature: [zero; 10],
+            torque_slope: zero,
+            torque_curvature: zero,
+            both: [zero; 4],
+        };
+        let mut least = V::splat(A::Scalar::ONE);
+        let mut index = A::Scalar::from_f64(self.knots.len() as f64);
+        let mut knots = self.knots;
+        while let Some((knot, earlier)) = knots.split_last_mut() {
+            let before = earlier.last().unwrap_or(knot).torque;
+            // The first torque may jump.
+            let jumps = if earlier.is_empty() { A::Scalar::ZERO } else { by_jump };
+            for i in 0..V::N {
+                if index == len.lane(i) {
+                    to_go.set_lane(i, ToGo::end(recovery, arrival, lanes(self.ends, i)));
+                    least.set_lane(i, A::Scalar::ONE);
+                }
+            }
+            let mut changed = *knot;
+            for i in 0..V::N {
+                let rest = to_go.lane(i);
+                let lowest = least.lane(i);
+                let old = changed.lane(i);
+                let jump = Jump { before: before.lane(i), weight: jumps };
+                let damping = dampings.lane(i);
+                let (new, now, divisor) = match V::N {
+                    1 => look_back::<A, false>(&local, &old, &jump, &rest, damping),
+                    _ => look_back::<A, true>(&local, &old, &jump, &rest, damping),
+                };
+                changed.set_lane(i, new);
+                to_go.set_lane(i, now);
+                least.set_lane(i, if divisor < lowest { divisor } else { lowest });
+            }
+            *knot = changed;
+            index = index - A::Scalar::ONE;
+            knots = earlier;
+        }
+        *self.least = least;
+    }
+}
+
+/// A copy of what a backward pass reads, which LLVM keeps in registers.
+struct Local<S> {
+    model: Model<S>,
+    limit: S,
+    weights: Weights<S>,
+}
+
+/// The torque before a knot, and the weight of the jump from there.
+struct Jump<S> {
+    before: S,
+    weight: S,
+}
+
+/// The new change and gains of a knot, what the rest of the plan costs from this knot on, and the
+/// divisor.
+#[inline(always)]
+fn look_back<A: Arithmetic, const IN_LANES: bool>(
+    Local { model, limit, weights }: &Local<A::Scalar>,
+    knot: &Knot<A::Scalar>,
+    jump: &Jump<A::Scalar>,
+    rest: &ToGo<A::Scalar>,
+    damping: A::Scalar,
+) -> (Knot<A::Scalar>, ToGo<A::Scalar>, A::Scalar) {
+    let (zero, one) = (A::Scalar::ZERO, A::Scalar::ONE);
+    let y: [A::Scalar; 4] = knot.state.into();
+    let torque = knot.torque;
+    let sin_cos = [sin_cos_near::<A, IN_LANES>(y[0]), sin_cos_near::<A, IN_LANES>(y[1])];
+    let [a1, a2, a3, a4, b] = derivatives::<A, IN_LANES>(model, y, sin_cos, torque);
+    let (by_state, [by_own, by_own2]) = weights.slopes(&model.params, y, sin_cos, torque);
+    let [p11, p12, p13, p14, p22, p23, p24, p33, p34, p44] = rest.curvature;
+    let rows =
+        [[p11, p12, p13, p14], [p12, p22, p23, p24], [p13, p23, p33, p34], [p14, p24, p34, p44]];
+    let apply = |x| [dot(rows[0], x), dot(rows[1], x), dot(rows[2], x), dot(rows[3], x)];
+
+    // The curvature and the slope of what the jump costs.
+    let pull = jump.weight + jump.weight;
+    let by_jump = pull * (torque - jump.before);
+    let p_b = plus_scaled(apply(b), one, rest.both);
+    let by_torque = dot(b, rest.slope) + (rest.torque_slope + (by_own + by_jump));
+    let by_torque2 =
+        dot(b, plus_scaled(p_b, one, rest.both)) + (rest.torque_curvature + (by_own2 + pull));
+    let by_both = [dot(a1, p_b), dot(a2, p_b), dot(a3, p_b), dot(a4, p_b)];
+
+    let divisor = by_torque2 + damping;
+    let inverse = one / divisor;
+    let wanted = torque - by_torque * inverse;
+    let bounded = saturate(wanted, *limit);
+    let change = bounded - torque;
+    // A torque at its bound has no feedback.
+    let free = if bounded == wanted { inverse } else { zero };
+    let gain = by_both.map(|x| -(x * free));
+    let smooth = pull * free;
+
+    let by_gain = plus_scaled(by_both, by_torque2, gain);
+    let [q1, q2, q3, q4] = [apply(a1), apply(a2), apply(a3), apply(a4)];
+    let (g, h, k) = (gain, by_gain, by_both);
+    let curvature = [
+        dot(a1, q1) + (g[0] * h[0] + k[0] * g[0]) + by_state[0][1],
+        dot(a1, q2) + (g[0] * h[1] + k[0] * g[1]),
+        dot(a1, q3) + (g[0] * h[2] + k[0] * g[2]),
+        dot(a1, q4) + (g[0] * h[3] + k[0] * g[3]),
+        dot(a2, q2) + (g[1] * h[1] + k[1] * g[1]) + by_state[1][1],
+        dot(a2, q3) + (g[1] * h[2] + k[1] * g[2]),
+        dot(a2, q4) + (g[1] * h[3] + k[1] * g[3]),
+        dot(a3, q3) + (g[2] * h[2] + k[2] * g[2]) + by_state[2][1],
+        dot(a3, q4) + (g[2] * h[3] + k[2] * g[3]),
+        dot(a4, q4) + (g[3] * h[3] + k[3] * g[3]) + by_state[3][1],
+    ];
+    let rest_slope = by_torque2 * change + by_torque;
+    let by_a = [dot(a1, rest.slope), dot(a2, rest.slope), dot(a3, rest.slope), dot(a4, rest.slope)];
+    let own = by_state.map(|[slope, _]| slope);
+    let slope = plus_scaled(plus_scaled(by_a, one, own), rest_slope, gain);
+    let slope = plus_scaled(slope, change, by_both);
+    let to_go = ToGo {
+        slope,
+        curvature,
+        torque_slope: smooth * rest_slope - (pull * change + by_jump),
+        torque_curvature: pull + smooth * (by_torque2 * smooth - (pull + pull)),
+        both: plus_scaled(by_both.map(|x| x * smooth), by_torque2 * smooth - pull, gain),
+    };
+    (Knot { change, gain, smooth, ..*knot }, to_go, divisor)
+}
+
+impl<S: Real> ToGo<S> {
+    /// About the state after a plan.
+    #[inline(never)]
+    fn end(recovery: &Recovery<S>, weight: S, end: [S; 4]) -> Self {
+        let (slope, [p1, p2, p3, p4]) = recovery.arrival_slopes(weight, end);
+        Self {
+            slope,
+            curvature: [p1[0], p1[1], p1[2], p1[3], p2[1], p2[2], p2[3], p3[2], p3[3], p4[3]],
+            torque_slope: S::ZERO,
+            torque_curvature: S::ZERO,
+            both: [S::ZERO; 4],
+        }
+    }
+}
+
+impl<V> ToGo<V> {
+    #[inline(always)]
+    fn lane<S: Real>(&self, i: usize) -> ToGo<S>
+    where
+        V: Lanewise<S>,
+    {
+        let [p1, p2, p3, p4, p5, p6, p7, p8, p9, p10] = &self.curvature;
+        ToGo {
+            slope: lanes(&self.slope, i),
+            curvature: [
+                p1.lane(i),
+                p2.lane(i),
+                p3.lane(i),
+                p4.lane(i),
+                p5.lane(i),
+                p6.lane(i),
+                p7.lane(i),
+                p8.lane(i),
+                p9.lane(i),
+                p10.lane(i),
+            ],
+            torque_slope: self.torque_slope.lane(i),
+            torque_curvature: self.torque_curvature.lane(i),
+            both: lanes(&self.both, i),
+        }
+    }
+
+    #[inline(always)]
+    fn set_lane<S: Real>(&mut self, i: usize, new: ToGo<S>)
+    where
+        V: Lanewise<S>,
+    {
+        set_lanes(&mut self.slope, i, new.slope);
+        for (place, x) in self.curvature.iter_mut().zip(new.curvature) {
+            place.set_lane(i, x);
+        }
+        self.torque_slope.set_lane(i, new.torque_slope);
+        self.torque_curvature.set_lane(i, new.torque_curvature);
+        set_lanes(&mut self.both, i, new.both);
+    }
+}
+
+/// Lane `i` of four numbers.
+#[inline(always)]
+pub(super) fn lanes<S: Real, V: Lanewise<S>>([x1, x2, x3, x4]: &[V; 4], i: usize) -> [S; 4] {
+    [x1.lane(i), x2.lane(i), x3.lane(i), x4.lane(i)]
+}
+
+#[inline(always)]
+pub(super) fn set_lanes<S: Real, V: Lanewise<S>>(places: &mut [V; 4], i: usize, x: [S; 4]) {
+    for (place, x) in places.iter_mut().zip(x) {
+        place.set_lane(i, x);
+    }
+}
+
+#[inline(always)]
+fn pair<S: Real, V: Lanewise<S>>((sin, cos): &SinCos<V>, i: usize) -> SinCos<S> {
+    (sin.lane(i), cos.lane(i))
+}

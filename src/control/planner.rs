@@ -1,0 +1,337 @@
+//! Plans a swing-up and how to follow it: iterative linear-quadratic regulation with a bounded
+//! torque.
+//!
+//! Y. Tassa, N. Mansard and E. Todorov, *Control-Limited Differential Dynamic Programming* (2014).
+//! Each iteration linearizes the steps about the plan and, from the last step to the first, finds
+//! the change of each torque that lowers the [cost](Cost), with the feedback that corrects
+//! deviations. It finds the best plan near the first guess, so the guess decides. The guesses pump
+//! energy.
+
+#[cfg(feature = "alloc")]
+mod search;
+
+use core::mem::replace;
+
+use super::cost::{Cost, Weights};
+use super::deviation::difference;
+use super::error::ControlError;
+use super::linearize::LinearModel;
+use super::linearize_step::linearize_step;
+use super::matrix::{dot, identity, transpose};
+use super::passes::Machine;
+use super::plan::{Knot, NoPlan};
+use super::recovery::{Recovery, is_below, is_near};
+use super::tries::{self, Plans};
+use crate::arithmetic::Arithmetic;
+use crate::error::{Error, Range};
+use crate::math::sealed::Sealed as _;
+use crate::math::{Real, SimdLevel};
+use crate::numpy::uniform;
+use crate::physics::{Params, Pendulum, State, plus_scaled, saturate};
+use rand_core::Rng;
+
+/// A plan may take so many iterations.
+const ITERATIONS: u32 = 150;
+
+/// The most steps of a simulation of the regulator: after a plan, and before a decision.
+const AFTER_A_PLAN: u32 = 2000;
+const AHEAD: u32 = 200;
+
+/// A guess holds a random torque for this time, s.
+const HOLD: f64 = 0.25;
+/// The largest gain with which a guess pumps energy, s/rad, and that without a plan.
+const PUMP: f64 = 3.0;
+const STEADY_PUMP: f64 = 0.2;
+
+/// Plans swing-ups for one machine.
+///
+/// A plan is found by simulation without bounds of the velocities, and no velocity of it reaches
+/// the bounds of the parameters: a machine does not stop where a simulation clamps. Infinite ones
+/// do not restrict a plan. For a machine that clamps, there is
+/// [`for_simulation`](Self::for_simulation).
+#[derive(Clone, Debug)]
+pub struct Planner<A: Arithmetic> {
+    model: Pendulum<A>,
+    recovery: Recovery<A::Scalar>,
+    weights: Weights<A::Scalar>,
+    /// The energy of standing upright, J.
+    upright: A::Scalar,
+    is_holding: bool,
+    level: SimdLevel,
+}
+
+impl<A: Arithmetic> Planner<A> {
+    /// Computes the regulator of a machine with these parameters, whose `dt` is the time between
+    /// two decisions, and a largest torque, N m.
+    ///
+    /// # Errors
+    ///
+    /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
+    pub fn new(params: Params<A::Scalar>, limit: A::Scalar) -> Result<Self, ControlError> {
+        Self::with_cost(params, limit, Cost::new(&params))
+    }
+
+    /// As [`new`](Self::new), with the weights of what a plan costs.
+    ///
+    /// # Errors
+    ///
+    /// Those of `new`, and a weight is out of range.
+    pub fn with_cost(
+        params: Params<A::Scalar>,
+        limit: A::Scalar,
+        cost: Cost<A::Scalar>,
+    ) -> Result<Self, ControlError> {
+        Self::build(params, limit, cost, false)
+    }
+
+    /// As [`with_cost`](Self::with_cost), for a simulation that clamps velocities at the bounds of
+    /// its parameters, as Gymnasium's does. Plans may use that as a brake.
+    ///
+    /// # Errors
+    ///
+    /// Those of `with_cost`.
+    pub fn for_simulation(
+        params: Params<A::Scalar>,
+        limit: A::Scalar,
+        cost: Cost<A::Scalar>,
+    ) -> Result<Self, ControlError> {
+        Self::build(params, limit, cost, true)
+    }
+
+    fn build(
+        mut params: Params<A::Scalar>,
+        limit: A::Scalar,
+        cost: Cost<A::Scalar>,
+        clamps: bool,
+    ) -> Result<Self, ControlError> {
+        cost.check()?;
+        let recovery = Recovery::new::<A>(params, limit)?;
+        let infinity = A::Scalar::from_f64(f64::INFINITY);
+        let bounds = [&mut params.max_velocity1, &mut params.max_velocity2];
+        let bounds = bounds.map(|x| if clamps { infinity } else { replace(x, infinity) });
+        let model = Pendulum::new_unchecked(params, State::UPRIGHT);
+        Ok(Self {
+            recovery,
+            weights: Weights::new(cost, params.dt, bounds),
+            upright: model.energy(),
+            model,
+            is_holding: false,
+            level: SimdLevel::widest(),
+        })
+    }
+
+    /// Plans from a state into memory of the caller, until a plan ends in a state from which the
+    /// regulator holds. Returns this plan, which is the first part of the memory: the tries take
+    /// one to ten tenths of it in turn.
+    ///
+    /// # Errors
+    ///
+    /// [`NoPlan::NotFound`] after so many tries, and [`NoPlan::Invalid`] if a number of the state
+    /// is not finite.
+    pub fn plan<'m, R: Rng + ?Sized>(
+        &mut self,
+        start: State<A::Scalar>,
+        tries: u32,
+        rng: &mut R,
+        memory: &'m mut [Knot<A::Scalar>],
+    ) -> Result<&'m mut [Knot<A::Scalar>], NoPlan> {
+        start.validate()?;
+        for parts in (1..=10).cycle().take(tries as usize) {
+            let len = memory.len() * parts / 10;
+            let Some(plan) = memory.get_mut(..len) else {
+                break;
+            };
+            // Extreme parameters can make a guess overflow.
+            if self.guess(start, rng, plan).is_ok() {
+                let (cost, end) = self.improve_alone(start, ITERATIONS, plan);
+                if cost.is_finite() && self.is_success(plan, end) && self.track(plan).is_ok() {
+                    return memory.get_mut(..len).ok_or(NoPlan::NotFound { tries });
+                }
+            }
+        }
+        Err(NoPlan::NotFound { tries })
+    }
+
+    /// Fills a plan with a first guess: random torques, and more or less torque that pumps energy.
+    ///
+    /// # Errors
+    ///
+    /// A number of the state is not finite, or extreme parameters make a torque overflow.
+    pub fn guess<R: Rng + ?Sized>(
+        &mut self,
+        start: State<A::Scalar>,
+        rng: &mut R,
+        plan: &mut [Knot<A::Scalar>],
+    ) -> Result<(), Error> {
+        let number = A::Scalar::from_f64;
+        let strength = uniform(rng, 0.0, 1.0);
+        let gain: A::Scalar = number(PUMP * strength * strength * strength);
+        let noise = uniform(rng, 0.1, 0.75) * self.recovery.limit.to_f64();
+        let (mut push, mut held) = (A::Scalar::ZERO, HOLD);
+        self.model.set_state(start)?;
+        for knot in plan {
+            if held >= HOLD {
+                push = number(uniform(rng, -noise, noise));
+                held = 0.0;
+            }
+            held += self.model.params().dt.to_f64();
+            let missing = self.upright - self.model.energy();
+            let state = self.model.state();
+            let torque = saturate(push + gain * missing * state.dtheta2, self.recovery.limit);
+            self.model.step(torque)?;
+            *knot = Knot { state, ..Knot::open(torque) };
+        }
+        Ok(())
+    }
+
+    /// Improves a plan by at most so many iterations. The plan then begins in the state `start`, so
+    /// the rest of a plan can be planned again while the machine moves. Returns the cost of the
+    /// plan: the lower, the better.
+    ///
+    /// # Errors
+    ///
+    /// A number of the state or of the plan is not finite, or they are so extreme that the cost or
+    /// a derivative overflows.
+    pub fn improve(
+        &mut self,
+        start: State<A::Scalar>,
+        iterations: u32,
+        plan: &mut [Knot<A::Scalar>],
+    ) -> Result<A::Scalar, ControlError> {
+        start.validate()?;
+        let (cost, _) = self.improve_alone(start, iterations, plan);
+        self.finish(cost, plan)
+    }
+
+    /// Checks the cost, and replaces the gains.
+    fn finish(
+        &mut self,
+        cost: A::Scalar,
+        plan: &mut [Knot<A::Scalar>],
+    ) -> Result<A::Scalar, ControlError> {
+        match cost.is_finite() {
+            true => self.track(plan).map(|()| cost),
+            false => Err(ControlError::NotFinite { name: "cost", value: cost.to_f64() }),
+        }
+    }
+
+    /// Returns the cost and the state after the plan.
+    fn improve_alone(
+        &self,
+        start: State<A::Scalar>,
+        iterations: u32,
+        plan: &mut [Knot<A::Scalar>],
+    ) -> (A::Scalar, State<A::Scalar>) {
+        let mut one = One { len: Some(plan.len()), cost: A::Scalar::ZERO, end: start };
+        let level = SimdLevel::Baseline;
+        tries::improve::<A, A::Scalar>(self.machine(), level, start, iterations, plan, &mut one);
+        (one.cost, one.end)
+    }
+
+    fn machine(&self) -> Machine<'_, A> {
+        Machine { model: self.model.model(), recovery: &self.recovery, weights: &self.weights }
+    }
+
+    /// Whether a plan ends where the regulator succeeds, and no velocity reaches its bound.
+    fn is_success(&self, plan: &[Knot<A::Scalar>], end: State<A::Scalar>) -> bool {
+        self.catches(end) && plan.iter().all(|knot| is_below(knot.state, self.weights.bounds))
+    }
+
+    /// Replaces the gains by those of a regulator along the plan, with the weights of the one
+    /// upright. Torques at their bound get some, too.
+    fn track(&mut self, plan: &mut [Knot<A::Scalar>]) -> Result<(), ControlError> {
+        let one = A::Scalar::ONE;
+        let mut cost = self.recovery.regulator.cost_to_go;
+        for knot in plan.iter_mut().rev() {
+            self.model.set_state(knot.state)?;
+            let LinearModel { a, b } = linearize_step(&self.model, knot.torque)?;
+            let cost_b = cost.map(|row| dot(row, b));
+            let divisor = dot(b, cost_b) + one;
+            let mut columns = transpose(&a);
+            knot.gain = columns.map(|column| -(dot(column, cost_b) / divisor));
+            // Those of A + B K.
+            for (column, k) in columns.iter_mut().zip(knot.gain) {
+                *column = plus_scaled(*column, k, b);
+            }
+            let curved = columns.map(|column| cost.map(|row| dot(row, column)));
+            cost = columns.map(|column| curved.map(|curved| dot(column, curved)));
+            for ((row, weights), k) in cost.iter_mut().zip(identity()).zip(knot.gain) {
+                *row = plus_scaled(plus_scaled(*row, one, weights), k, knot.gain);
+            }
+        }
+        Ok(())
+    }
+
+    /// The torque at a decision, N m: that of the plan's knot, and after the plan that of the
+    /// regulator. `saturate` limits it, as in [`Knot::follow`].
+    #[must_use]
+    pub fn follow(
+        &self,
+        plan: &[Knot<A::Scalar>],
+        step: usize,
+        state: State<A::Scalar>,
+    ) -> A::Scalar {
+        match plan.get(step) {
+            Some(knot) => knot.follow(state),
+            None => self.recovery.regulator.torque(difference(state, State::UPRIGHT)),
+        }
+    }
+
+    /// The torque without a plan, N m, at most the largest: that of the regulator from a state on
+    /// in which it succeeds, before that a torque that pumps energy. It computes less than a plan,
+    /// and succeeds later: the acrobot swings chaotically until it is in such a state.
+    ///
+    /// # Errors
+    ///
+    /// A number of the state is not finite, or the state is so extreme that the torque overflows.
+    pub fn decide(&mut self, state: State<A::Scalar>) -> Result<A::Scalar, Error> {
+        self.model.set_state(state)?;
+        let x = difference(state, State::UPRIGHT);
+        let (model, bounds) = (&self.model, self.weights.bounds);
+        self.is_holding =
+            is_near(x) && (self.is_holding || self.recovery.succeeds(model.clone(), bounds, AHEAD));
+        let torque = match self.is_holding {
+            true => self.recovery.torque(x),
+            // It adds energy while it has the sign of θ̇2, and in the faster mode of swinging this
+            // is opposite to that of θ̇1.
+            false => {
+                let gain = A::Scalar::from_f64(-STEADY_PUMP);
+                let torque = gain * (self.upright - model.energy()) * state.dtheta1;
+                saturate(torque, self.recovery.limit)
+            }
+        };
+        Range::Finite.check("torque", torque.to_f64(), "N m")?;
+        Ok(torque)
+    }
+
+    /// Whether the regulator succeeds from a state.
+    #[must_use]
+    pub fn catches(&self, state: State<A::Scalar>) -> bool {
+        let mut model = self.model.clone();
+        model.set_state(state).is_ok()
+            && self.recovery.succeeds(model, self.weights.bounds, AFTER_A_PLAN)
+    }
+
+    /// Sets the SIMD instructions that plans side by side use: the widest by default.
+    pub fn set_simd_level(&mut self, level: SimdLevel) {
+        self.level = level;
+    }
+}
+
+/// One plan alone.
+struct One<S> {
+    len: Option<usize>,
+    cost: S,
+    end: State<S>,
+}
+
+impl<S: Real> Plans<S, S> for One<S> {
+    fn next(&mut self, _: &mut [Knot<S>], _: usize) -> Option<usize> {
+        self.len.take()
+    }
+
+    fn take(&mut self, _: &[Knot<S>], _: usize, cost: S, end: State<S>) -> bool {
+        (self.cost, self.end) = (cost, end);
+        false
+    }
+}

@@ -1,0 +1,186 @@
+//! Improves plans side by side, a plan a lane. A lane whose plan is done takes the next.
+//!
+//! The lanes of a pass are in different phases: some search for the part of their change that
+//! lowers the cost, some keep the part that they found, and some wait for a backward pass. Each
+//! pass computes all lanes, so a backward pass is worth its time once most lanes wait. A backward
+//! pass of a lane that does not wait finds the same change again.
+
+use super::passes::{Backward, Forward, Machine, Motion, Orders, lanes, set_lanes};
+use super::plan::Knot;
+use crate::arithmetic::Arithmetic;
+use crate::math::sealed::Sealed as _;
+use crate::math::{Lanewise, Real, SimdLevel};
+use crate::physics::{State, sin_cos};
+
+/// An iteration counts as stalled if it lowers the cost by less than this part, or not at all. So
+/// many in succession end the search.
+const LITTLE: f64 = 1e-3;
+const STALLED: u32 = 8;
+/// A change of the torques is tried at its full size, then at a quarter of it, and so on.
+const QUARTERS: u32 = 5;
+/// The first damping: it is added to the curvature of the cost by a torque. It grows where less
+/// than this part of a change lowers the cost.
+const DAMPING: f64 = 1e-3;
+const SMALL: f64 = 0.2;
+/// The least curvature by a torque.
+const LEAST: f64 = 1e-12;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    Idle,
+    Waits,
+    Searches,
+    Keeps,
+}
+
+/// The plan in a lane.
+#[derive(Clone, Copy, Debug)]
+struct Try<S> {
+    phase: Phase,
+    cost: S,
+    damping: S,
+    /// The part of the change that is tried.
+    part: S,
+    quarters: u32,
+    iterations: u32,
+    stalled: u32,
+}
+
+/// Plans to improve.
+pub(super) trait Plans<S, V> {
+    /// Writes the next plan into a lane. Returns its length, or `None` if there is no other.
+    fn next(&mut self, knots: &mut [Knot<V>], lane: usize) -> Option<usize>;
+
+    /// Takes an improved plan, with its cost and the state after it. No cost is finite if the
+    /// numbers overflow. Returns whether to go on.
+    fn take(&mut self, knots: &[Knot<V>], lane: usize, cost: S, end: State<S>) -> bool;
+}
+
+/// Improves all plans from a state, each by at most so many iterations.
+#[inline(never)]
+pub(super) fn improve<A: Arithmetic, V: Lanewise<A::Scalar>>(
+    machine: Machine<'_, A>,
+    level: SimdLevel,
+    start: State<A::Scalar>,
+    iterations: u32,
+    knots: &mut [Knot<V>],
+    plans: &mut impl Plans<A::Scalar, V>,
+) {
+    let number = A::Scalar::from_f64;
+    let [zero, one] = [A::Scalar::ZERO, A::Scalar::ONE];
+    let new = Try {
+        phase: Phase::Idle,
+        cost: zero,
+        damping: number(DAMPING),
+        part: zero,
+        quarters: 0,
+        iterations: 0,
+        stalled: 0,
+    };
+    let mut tries = V::each(new);
+    let tries: &mut [Try<A::Scalar>] = tries.as_mut();
+    let y: [A::Scalar; 4] = start.into();
+    let [sines1, sines2] = sin_cos::<A>([y[0], y[1]]);
+    let splat2 = |(sin, cos)| (V::splat(sin), V::splat(cos));
+    let first = Motion {
+        y: y.map(V::splat),
+        sin_cos: [splat2(sines1), splat2(sines2)],
+        torque: V::splat(zero),
+        planned: V::splat(zero),
+        cost: V::splat(zero),
+    };
+    let mut orders = Orders { len: V::splat(zero), part: V::splat(zero), keep: V::splat(zero) };
+    let mut ends = first.y;
+    loop {
+        let mut active = 0;
+        for (i, plan) in tries.iter_mut().enumerate() {
+            if plan.phase == Phase::Idle {
+                if let Some(len) = plans.next(knots, i) {
+                    orders.len.set_lane(i, number(len as f64));
+                    *plan = Try { phase: Phase::Keeps, ..new };
+                }
+            }
+            active += usize::from(plan.phase != Phase::Idle);
+            orders.part.set_lane(i, plan.part);
+            let keeps = if plan.phase == Phase::Keeps { one } else { zero };
+            orders.keep.set_lane(i, keeps);
+        }
+        if active == 0 {
+            return;
+        }
+        let longest = tries.iter().enumerate();
+        let longest = longest.filter(|(_, plan)| plan.phase != Phase::Idle);
+        let longest = longest.map(|(i, _)| orders.len.lane(i).to_f64() as usize).max();
+        let Some((knots, _)) = knots.split_at_mut_checked(longest.unwrap_or(0)) else { return };
+
+        let mut motion = first;
+        level.run(Forward { machine, knots, orders: &orders, motion: &mut motion });
+        let mut waiting = 0;
+        for (i, plan) in tries.iter_mut().enumerate() {
+            let cost = motion.cost.lane(i);
+            match plan.phase {
+                Phase::Searches if cost < plan.cost - plan.cost * number(1e-6) => {
+                    plan.phase = Phase::Keeps;
+                }
+                Phase::Searches => {
+                    plan.part = plan.part * number(0.25);
+                    plan.quarters += 1;
+                    if plan.quarters == QUARTERS {
+                        plan.fail();
+                    }
+                }
+                Phase::Keeps => {
+                    set_lanes(&mut ends, i, lanes(&motion.y, i));
+                    let before = plan.cost;
+                    plan.cost = cost;
+                    plan.phase = Phase::Waits;
+                    if plan.part > zero {
+                        let is_little = before - cost < before * number(LITTLE);
+                        plan.stalled = if is_little { plan.stalled + 1 } else { 0 };
+                        plan.iterations += 1;
+                        let is_small = plan.part < number(SMALL);
+                        plan.damping = plan.damping * number(if is_small { 3.0 } else { 0.5 });
+                    }
+                }
+                Phase::Waits | Phase::Idle => {}
+            }
+            let is_over = plan.iterations >= iterations || plan.stalled > STALLED;
+            if plan.phase == Phase::Waits && (is_over || !plan.cost.is_finite()) {
+                plan.phase = Phase::Idle;
+                if !plans.take(knots, i, plan.cost, lanes(&ends, i).into()) {
+                    return;
+                }
+            }
+            waiting += usize::from(plan.phase == Phase::Waits);
+        }
+        if 4 * waiting < 3 * active {
+            continue;
+        }
+        let mut damping = V::splat(one);
+        for (i, plan) in tries.iter().enumerate() {
+            damping.set_lane(i, plan.damping);
+        }
+        let mut least = damping;
+        let backward =
+            Backward { machine, knots, len: orders.len, ends: &ends, damping, least: &mut least };
+        level.run(backward);
+        for (i, plan) in tries.iter_mut().enumerate() {
+            if plan.phase == Phase::Waits {
+                match least.lane(i) >= number(LEAST) {
+                    true => (plan.phase, plan.part, plan.quarters) = (Phase::Searches, one, 0),
+                    false => plan.fail(),
+                }
+            }
+        }
+    }
+}
+
+impl<S: Real> Try<S> {
+    /// No part of the change lowers the cost.
+    fn fail(&mut self) {
+        self.phase = Phase::Waits;
+        self.damping = self.damping * S::from_f64(8.0);
+        self.iterations += 1;
+        self.stalled += 1;
+    }
+}
