@@ -32,18 +32,29 @@ use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
 /// # Errors
 ///
 /// Those of [`linearize`](super::linearize).
+#[inline(never)] // saves flash
 pub fn linearize_step<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
 ) -> Result<LinearModel<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let y = pendulum.state().into();
-    let [columns @ .., b] =
-        derivatives::<A, false>(pendulum.model(), y, pendulum.sin_cos(), torque);
+    let [columns @ .., b] = derivatives_alone::<A>(pendulum.model(), y, pendulum.sin_cos(), torque);
     let model = LinearModel { a: transpose(&columns), b };
     check_finite("a", model.a.as_flattened())?;
     check_finite("b", &model.b)?;
     Ok(model)
+}
+
+/// As [`derivatives`], out of line, which saves flash.
+#[inline(never)]
+pub(super) fn derivatives_alone<A: Arithmetic>(
+    model: &Model<A::Scalar>,
+    y: [A::Scalar; 4],
+    sin_cos: [SinCos<A::Scalar>; 2],
+    torque: A::Scalar,
+) -> [[A::Scalar; 4]; 5] {
+    derivatives::<A, false>(model, y, sin_cos, torque)
 }
 
 /// The columns of A, and B. `IN_LANES` inlines all, for a loop over lanes.
@@ -74,10 +85,16 @@ pub(super) fn derivatives<A: Arithmetic, const IN_LANES: bool>(
     ];
     let after = add(before, sixth, slopes);
 
-    let stages = Stages { k, slopes, after };
-    let stages = stages.next::<A, IN_LANES>(model, &before, y, torque, half, third);
-    let stages = stages.next::<A, IN_LANES>(model, &before, y, torque, half, third);
-    stages.next::<A, IN_LANES>(model, &before, y, torque, dt, sixth).after
+    let mut stages = Stages { k, slopes, after };
+    if !IN_LANES {
+        for (h, weight) in [(half, third), (half, third), (dt, sixth)] {
+            stages = stages.next::<A, false>(model, &before, y, torque, h, weight);
+        }
+        return stages.after;
+    }
+    let stages = stages.next::<A, true>(model, &before, y, torque, half, third);
+    let stages = stages.next::<A, true>(model, &before, y, torque, half, third);
+    stages.next::<A, true>(model, &before, y, torque, dt, sixth).after
 }
 
 /// A stage of the Runge-Kutta step: the rates of the state, those of the columns, and the sum of

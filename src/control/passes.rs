@@ -5,7 +5,7 @@
 //! lanes are around code for one number: see `math/lanes.rs`.
 
 use super::cost::Weights;
-use super::linearize_step::{derivatives, sin_cos_near};
+use super::linearize_step::{derivatives, derivatives_alone, sin_cos_near};
 use super::matrix::dot;
 use super::plan::Knot;
 use super::recovery::Recovery;
@@ -216,7 +216,10 @@ fn look_back<A: Arithmetic, const IN_LANES: bool>(
     let y: [A::Scalar; 4] = knot.state.into();
     let torque = knot.torque;
     let sin_cos = [sin_cos_near::<A, IN_LANES>(y[0]), sin_cos_near::<A, IN_LANES>(y[1])];
-    let [a1, a2, a3, a4, b] = derivatives::<A, IN_LANES>(model, y, sin_cos, torque);
+    let [a1, a2, a3, a4, b] = match IN_LANES {
+        true => derivatives::<A, true>(model, y, sin_cos, torque),
+        false => derivatives_alone::<A>(model, y, sin_cos, torque),
+    };
     let (by_state, [by_own, by_own2]) = weights.slopes(&model.params, y, sin_cos, torque);
     let [p11, p12, p13, p14, p22, p23, p24, p33, p34, p44] = rest.curvature;
     let rows =

@@ -98,6 +98,7 @@ impl<A: Arithmetic> Planner<A> {
         Self::build(params, limit, cost, true)
     }
 
+    #[inline(never)] // saves flash
     fn build(
         mut params: Params<A::Scalar>,
         limit: A::Scalar,

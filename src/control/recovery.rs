@@ -74,6 +74,7 @@ impl<S: Real> Recovery<S> {
     ///
     /// A plan can end inside the ellipsoid where the linear model does not hold, and leave it. So
     /// the simulation has to stay inside for a sixteenth of the longest time.
+    #[inline(never)] // saves flash
     pub(super) fn succeeds<A: Arithmetic<Scalar = S>>(
         &self,
         mut model: Pendulum<A>,

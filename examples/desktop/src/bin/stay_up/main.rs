@@ -6,7 +6,7 @@
 //! cargo run --release -p desktop --bin stay_up -- --replan     # both in real time
 //! ```
 //!
-//! The planner, of `crates/controller`, plans before the acrobot moves. Prints the mean return of
+//! The planner plans before the acrobot moves. Prints the mean return of
 //! episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or
 //! how many of Gymnasium's initial states end upright.
 
@@ -121,14 +121,13 @@ fn gymnasium(seed: u64) -> anyhow::Result<Episode> {
     let params = Params { dt: 1.0 / RATE as f32, ..Params::DEFAULT };
     let acrobot = Acrobot::<Fast>::with_params(seed, params)?;
     let mut planner = Planner::<Fast>::new(params, GYMNASIUM)?;
-    let mut memory = [Knot::EMPTY; STEPS];
-    let found = planner.plan(acrobot.state(), TRIES, &mut Pcg64::new(seed), &mut memory);
-    let plan: &[Knot<f32>] = match found {
+    let found = planner.search(acrobot.state(), TRIES, &mut Pcg64::new(seed), STEPS);
+    let plan = match found {
         Ok(plan) => plan,
-        Err(NoPlan::NotFound { .. }) => &[],
+        Err(NoPlan::NotFound { .. }) => vec![],
         Err(error) => return Err(error.into()),
     };
-    Episode::play(acrobot, &planner, plan, GYMNASIUM, 50 * RATE)
+    Episode::play(acrobot, &planner, &plan, GYMNASIUM, 50 * RATE)
 }
 
 fn main() -> anyhow::Result<()> {

@@ -2,7 +2,7 @@
 //!
 //! The planner finds only the best plan near a first guess. So the search goes on from the best
 //! plans: it changes a few torques of a plan, removes some of its steps or repeats them, and plans
-//! again from there.
+//! again from there, many plans side by side.
 
 use std::ops::Range;
 
@@ -15,20 +15,21 @@ use acrobot::{Acrobot, Fast, Params, State};
 
 use crate::Episode;
 
-const GUESSES: usize = 120;
+const GUESSES: usize = 160;
 /// After a few iterations the best of them are planned until no iteration helps.
 const FEW: u32 = 25;
 const ALL: u32 = 150;
-const KEPT: usize = 12;
-/// The best of these are changed in turn, and from the middle of the search on only the best one.
+const KEPT: usize = 16;
+/// In each round the best plans are changed, later only the best one, with so many iterations.
+const ROUNDS: usize = 24;
 const CHANGED: usize = 4;
-const CHANGES: usize = 240;
+const CHANGES: usize = 16;
 const ITERATIONS: u32 = 50;
 /// The most steps that a change is about.
 const WINDOW: usize = 30;
-/// Planning again takes so many iterations, and so many tries until a plan holds.
+/// Planning again takes so many iterations, and so many rounds until a plan holds.
 const AGAIN: u32 = 12;
-const TRIES: usize = 4;
+const TRIES: usize = 2;
 
 pub type Plan = Vec<Knot<f32>>;
 
@@ -58,11 +59,18 @@ impl Search {
         Ok(Self { acrobot, planner, limit, lengths, steps, rng: Pcg64::new(seed) })
     }
 
-    /// Improves a plan, and simulates an episode that follows it.
-    fn improve(&mut self, iterations: u32, mut plan: Plan) -> anyhow::Result<(Episode, Plan)> {
-        self.planner.improve(self.acrobot.state(), iterations, &mut plan)?;
-        let acrobot = self.acrobot.clone();
-        Ok((Episode::play(acrobot, &self.planner, &plan, self.limit, self.steps)?, plan))
+    /// Improves plans, and simulates an episode that follows each.
+    fn improve(
+        &mut self,
+        iterations: u32,
+        mut plans: Vec<Plan>,
+    ) -> anyhow::Result<Vec<(Episode, Plan)>> {
+        self.planner.improve_all(self.acrobot.state(), iterations, &mut plans)?;
+        let play = |plan: Plan| {
+            let acrobot = self.acrobot.clone();
+            Ok((Episode::play(acrobot, &self.planner, &plan, self.limit, self.steps)?, plan))
+        };
+        plans.into_iter().map(play).collect()
     }
 
     fn guess(&mut self) -> anyhow::Result<Plan> {
@@ -78,7 +86,7 @@ impl Search {
 
     /// A changed copy of a plan.
     fn change(&mut self, plan: &[Knot<f32>]) -> Plan {
-        let mut torques: Vec<f32> = plan.iter().map(|step| step.torque).collect();
+        let mut torques: Vec<f32> = plan.iter().map(|knot| knot.torque).collect();
         let end = self.draw(1, torques.len() + 1);
         let window = end - self.draw(1, WINDOW + 1).min(end)..end;
         match self.draw(0, 3) {
@@ -99,28 +107,30 @@ impl Search {
 
     /// The best plan of a part of the search.
     pub fn run(&mut self, part: usize) -> anyhow::Result<(Episode, Plan)> {
-        let start = self.acrobot.state();
         let mut guesses = Vec::new();
         for _ in 0..GUESSES / part {
-            let mut plan = self.guess()?;
-            guesses.push((self.planner.improve(start, FEW, &mut plan)?, plan));
+            guesses.push(self.guess()?);
         }
-        guesses.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let mut best = Vec::new();
-        for (_, plan) in guesses.into_iter().take(KEPT / part) {
-            best.push(self.improve(ALL, plan)?);
-        }
-        for i in 0..CHANGES / part {
+        guesses.sort_by_key(Vec::len); // those side by side have similar lengths
+        let costs = self.planner.improve_all(self.acrobot.state(), FEW, &mut guesses)?;
+        let mut guesses: Vec<_> = costs.into_iter().zip(guesses).collect();
+        guesses.sort_by(|(a, _), (b, _)| value(a).total_cmp(&value(b)));
+        guesses.truncate(KEPT / part.min(4));
+        let mut best = self.improve(ALL, guesses.into_iter().map(|(_, plan)| plan).collect())?;
+        let rounds = ROUNDS / part;
+        for round in 0..rounds {
             best.sort_by(|(a, _), (b, _)| b.total.total_cmp(&a.total));
-            best.truncate(if i < CHANGES / part / 2 { CHANGED } else { 1 });
+            best.truncate(if round < rounds / 2 { CHANGED } else { 1 });
+            let plans = (0..CHANGES).map(|i| self.change(&best[i % best.len()].1)).collect();
+            let changed = self.improve(ITERATIONS, plans)?;
             let len = best.len();
-            let old = &mut best[i % len];
-            let changed = self.change(&old.1);
-            let changed = self.improve(ITERATIONS, changed)?;
-            if changed.0.total > old.0.total {
-                *old = changed;
+            for (i, changed) in changed.into_iter().enumerate() {
+                if changed.0.total > best[i % len].0.total {
+                    best[i % len] = changed;
+                }
             }
         }
+        best.sort_by(|(a, _), (b, _)| b.total.total_cmp(&a.total));
         Ok(best.swap_remove(0))
     }
 
@@ -137,17 +147,26 @@ impl Search {
         self.acrobot.set_state(state)?;
         self.planner = Planner::new(params, self.limit)?;
         self.steps = steps;
-        let mut best = self.improve(AGAIN, rest)?;
-        for i in 0..TRIES {
+        let mut best = self.improve(AGAIN, vec![rest])?.swap_remove(0);
+        for _ in 0..TRIES {
             if best.0.holds(steps) {
                 break;
             }
-            let other = if i % 2 == 0 { self.guess()? } else { self.change(&best.1) };
-            let other = self.improve(ITERATIONS, other)?;
-            if other.0.total > best.0.total {
-                best = other;
+            let mut plans = Vec::new();
+            for i in 0..CHANGES {
+                plans.push(if i % 2 == 0 { self.guess()? } else { self.change(&best.1) });
+            }
+            for other in self.improve(ITERATIONS, plans)? {
+                if other.0.total > best.0.total {
+                    best = other;
+                }
             }
         }
         Ok(best.1)
     }
+}
+
+/// The cost of a plan; infinite where the numbers overflow.
+fn value<E>(cost: &Result<f32, E>) -> f32 {
+    *cost.as_ref().unwrap_or(&f32::INFINITY)
 }
