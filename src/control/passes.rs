@@ -126,17 +126,10 @@ pub(super) struct Backward<'a, A: Arithmetic, V> {
     pub(super) least: &'a mut V,
 }
 
-/// What the rest of a plan costs, about a knot: slopes and curvatures by the state before the knot,
-/// and by the torque before it.
-#[derive(Clone, Copy, Debug)]
-struct ToGo<V> {
-    slope: [V; 4],
-    /// The upper triangle, by rows.
-    curvature: [V; 10],
-    torque_slope: V,
-    torque_curvature: V,
-    both: [V; 4],
-}
+/// What the rest of a plan costs, about a knot: the slopes by the state before the knot, the upper
+/// triangle of the curvatures by rows, the curvatures by a state and the torque before the knot, and
+/// the slope and the curvature by that torque.
+type ToGo<V> = [V; 20];
 
 impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Backward<'_, A, V> {
     #[inline(always)]
@@ -146,13 +139,7 @@ impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Backward<'_, A, V> {
         let [by_jump, arrival] = weights.jump_and_arrival();
         let (len, dampings) = (self.len, self.damping);
         let zero = V::splat(A::Scalar::ZERO);
-        let mut to_go = ToGo {
-            slope: [zero; 4],
-            curvature: [zero; 10],
-            torque_slope: zero,
-            torque_curvature: zero,
-            both: [zero; 4],
-        };
+        let mut to_go = [zero; 20];
         let mut least = V::splat(A::Scalar::ONE);
         let mut index = A::Scalar::from_f64(self.knots.len() as f64);
         let mut knots = self.knots;
@@ -162,13 +149,14 @@ impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Backward<'_, A, V> {
             let jumps = if earlier.is_empty() { A::Scalar::ZERO } else { by_jump };
             for i in 0..V::N {
                 if index == len.lane(i) {
-                    to_go.set_lane(i, ToGo::end(recovery, arrival, lanes(self.ends, i)));
+                    let end = lanes(self.ends, i);
+                    set_lanes(&mut to_go, i, recovery.arrival_slopes(arrival, end));
                     least.set_lane(i, A::Scalar::ONE);
                 }
             }
             let mut changed = *knot;
             for i in 0..V::N {
-                let rest = to_go.lane(i);
+                let rest = lanes(&to_go, i);
                 let lowest = least.lane(i);
                 let old = changed.lane(i);
                 let jump = Jump { before: before.lane(i), weight: jumps };
@@ -178,7 +166,7 @@ impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Backward<'_, A, V> {
                     _ => look_back::<A, true>(&local, &old, &jump, &rest, damping),
                 };
                 changed.set_lane(i, new);
-                to_go.set_lane(i, now);
+                set_lanes(&mut to_go, i, now);
                 least.set_lane(i, if divisor < lowest { divisor } else { lowest });
             }
             *knot = changed;
@@ -221,7 +209,9 @@ fn look_back<A: Arithmetic, const IN_LANES: bool>(
         false => derivatives_alone::<A>(model, y, sin_cos, torque),
     };
     let (by_state, [by_own, by_own2]) = weights.slopes(&model.params, y, sin_cos, torque);
-    let [p11, p12, p13, p14, p22, p23, p24, p33, p34, p44] = rest.curvature;
+    let [s1, s2, s3, s4, p11, p12, p13, p14, p22, p23, p24, p33, p34, p44, rest @ ..] = *rest;
+    let [both1, both2, both3, both4, torque_slope, torque_curvature] = rest;
+    let (slope, both) = ([s1, s2, s3, s4], [both1, both2, both3, both4]);
     let rows =
         [[p11, p12, p13, p14], [p12, p22, p23, p24], [p13, p23, p33, p34], [p14, p24, p34, p44]];
     let apply = |x| [dot(rows[0], x), dot(rows[1], x), dot(rows[2], x), dot(rows[3], x)];
@@ -229,10 +219,9 @@ fn look_back<A: Arithmetic, const IN_LANES: bool>(
     // The curvature and the slope of what the jump costs.
     let pull = jump.weight + jump.weight;
     let by_jump = pull * (torque - jump.before);
-    let p_b = plus_scaled(apply(b), one, rest.both);
-    let by_torque = dot(b, rest.slope) + (rest.torque_slope + (by_own + by_jump));
-    let by_torque2 =
-        dot(b, plus_scaled(p_b, one, rest.both)) + (rest.torque_curvature + (by_own2 + pull));
+    let p_b = plus_scaled(apply(b), one, both);
+    let by_torque = dot(b, slope) + (torque_slope + (by_own + by_jump));
+    let by_torque2 = dot(b, plus_scaled(p_b, one, both)) + (torque_curvature + (by_own2 + pull));
     let by_both = [dot(a1, p_b), dot(a2, p_b), dot(a3, p_b), dot(a4, p_b)];
 
     let divisor = by_torque2 + damping;
@@ -247,99 +236,56 @@ fn look_back<A: Arithmetic, const IN_LANES: bool>(
 
     let by_gain = plus_scaled(by_both, by_torque2, gain);
     let [q1, q2, q3, q4] = [apply(a1), apply(a2), apply(a3), apply(a4)];
-    let (g, h, k) = (gain, by_gain, by_both);
-    let curvature = [
-        dot(a1, q1) + (g[0] * h[0] + k[0] * g[0]) + by_state[0][1],
-        dot(a1, q2) + (g[0] * h[1] + k[0] * g[1]),
-        dot(a1, q3) + (g[0] * h[2] + k[0] * g[2]),
-        dot(a1, q4) + (g[0] * h[3] + k[0] * g[3]),
-        dot(a2, q2) + (g[1] * h[1] + k[1] * g[1]) + by_state[1][1],
-        dot(a2, q3) + (g[1] * h[2] + k[1] * g[2]),
-        dot(a2, q4) + (g[1] * h[3] + k[1] * g[3]),
-        dot(a3, q3) + (g[2] * h[2] + k[2] * g[2]) + by_state[2][1],
-        dot(a3, q4) + (g[2] * h[3] + k[2] * g[3]),
-        dot(a4, q4) + (g[3] * h[3] + k[3] * g[3]) + by_state[3][1],
-    ];
-    let rest_slope = by_torque2 * change + by_torque;
-    let by_a = [dot(a1, rest.slope), dot(a2, rest.slope), dot(a3, rest.slope), dot(a4, rest.slope)];
+    // Elements i and j of K Qᵀ + Q Kᵀ + K Quu Kᵀ.
+    let by = |i: usize, j: usize| gain[i] * by_gain[j] + by_both[i] * gain[j];
     let own = by_state.map(|[slope, _]| slope);
-    let slope = plus_scaled(plus_scaled(by_a, one, own), rest_slope, gain);
-    let slope = plus_scaled(slope, change, by_both);
-    let to_go = ToGo {
-        slope,
-        curvature,
-        torque_slope: smooth * rest_slope - (pull * change + by_jump),
-        torque_curvature: pull + smooth * (by_torque2 * smooth - (pull + pull)),
-        both: plus_scaled(by_both.map(|x| x * smooth), by_torque2 * smooth - pull, gain),
-    };
+    let rest = by_torque2 * change + by_torque;
+    let by_a = [dot(a1, slope), dot(a2, slope), dot(a3, slope), dot(a4, slope)];
+    let slope = plus_scaled(plus_scaled(by_a, one, own), rest, gain);
+    let [s1, s2, s3, s4] = plus_scaled(slope, change, by_both);
+    let both = by_both.map(|x| x * smooth);
+    let [both1, both2, both3, both4] = plus_scaled(both, by_torque2 * smooth - pull, gain);
+    let to_go = [
+        s1,
+        s2,
+        s3,
+        s4,
+        dot(a1, q1) + by(0, 0) + by_state[0][1],
+        dot(a1, q2) + by(0, 1),
+        dot(a1, q3) + by(0, 2),
+        dot(a1, q4) + by(0, 3),
+        dot(a2, q2) + by(1, 1) + by_state[1][1],
+        dot(a2, q3) + by(1, 2),
+        dot(a2, q4) + by(1, 3),
+        dot(a3, q3) + by(2, 2) + by_state[2][1],
+        dot(a3, q4) + by(2, 3),
+        dot(a4, q4) + by(3, 3) + by_state[3][1],
+        both1,
+        both2,
+        both3,
+        both4,
+        smooth * rest - (pull * change + by_jump),
+        pull + smooth * (by_torque2 * smooth - (pull + pull)),
+    ];
     (Knot { change, gain, smooth, ..*knot }, to_go, divisor)
 }
 
-impl<S: Real> ToGo<S> {
-    /// About the state after a plan.
-    #[inline(never)]
-    fn end(recovery: &Recovery<S>, weight: S, end: [S; 4]) -> Self {
-        let (slope, [p1, p2, p3, p4]) = recovery.arrival_slopes(weight, end);
-        Self {
-            slope,
-            curvature: [p1[0], p1[1], p1[2], p1[3], p2[1], p2[2], p2[3], p3[2], p3[3], p4[3]],
-            torque_slope: S::ZERO,
-            torque_curvature: S::ZERO,
-            both: [S::ZERO; 4],
-        }
-    }
-}
-
-impl<V> ToGo<V> {
-    #[inline(always)]
-    fn lane<S: Real>(&self, i: usize) -> ToGo<S>
-    where
-        V: Lanewise<S>,
-    {
-        let [p1, p2, p3, p4, p5, p6, p7, p8, p9, p10] = &self.curvature;
-        ToGo {
-            slope: lanes(&self.slope, i),
-            curvature: [
-                p1.lane(i),
-                p2.lane(i),
-                p3.lane(i),
-                p4.lane(i),
-                p5.lane(i),
-                p6.lane(i),
-                p7.lane(i),
-                p8.lane(i),
-                p9.lane(i),
-                p10.lane(i),
-            ],
-            torque_slope: self.torque_slope.lane(i),
-            torque_curvature: self.torque_curvature.lane(i),
-            both: lanes(&self.both, i),
-        }
-    }
-
-    #[inline(always)]
-    fn set_lane<S: Real>(&mut self, i: usize, new: ToGo<S>)
-    where
-        V: Lanewise<S>,
-    {
-        set_lanes(&mut self.slope, i, new.slope);
-        for (place, x) in self.curvature.iter_mut().zip(new.curvature) {
-            place.set_lane(i, x);
-        }
-        self.torque_slope.set_lane(i, new.torque_slope);
-        self.torque_curvature.set_lane(i, new.torque_curvature);
-        set_lanes(&mut self.both, i, new.both);
-    }
-}
-
-/// Lane `i` of four numbers.
+/// Lane `i` of some numbers.
 #[inline(always)]
-pub(super) fn lanes<S: Real, V: Lanewise<S>>([x1, x2, x3, x4]: &[V; 4], i: usize) -> [S; 4] {
-    [x1.lane(i), x2.lane(i), x3.lane(i), x4.lane(i)]
+pub(super) fn lanes<S: Real, V: Lanewise<S>, const K: usize>(x: &[V; K], i: usize) -> [S; K] {
+    let mut lanes = [S::ZERO; K];
+    for (lane, x) in lanes.iter_mut().zip(x) {
+        *lane = x.lane(i);
+    }
+    lanes
 }
 
 #[inline(always)]
-pub(super) fn set_lanes<S: Real, V: Lanewise<S>>(places: &mut [V; 4], i: usize, x: [S; 4]) {
+pub(super) fn set_lanes<S: Real, V: Lanewise<S>, const K: usize>(
+    places: &mut [V; K],
+    i: usize,
+    x: [S; K],
+) {
     for (place, x) in places.iter_mut().zip(x) {
         place.set_lane(i, x);
     }

@@ -12,7 +12,7 @@ use super::error::ControlError;
 use super::linearize::LinearModel;
 use super::linearize_step::linearize_step;
 use super::lqr::{Lqr, lqr};
-use super::matrix::{Matrix, dot, identity};
+use super::matrix::{dot, identity};
 use crate::arithmetic::Arithmetic;
 use crate::error::Range;
 use crate::math::Real;
@@ -112,14 +112,19 @@ impl<S: Real> Recovery<S> {
         weight * S::from_f64(libm::log1p(excess.to_f64()))
     }
 
-    /// The slope and the curvature of [`arrival`](Self::arrival). Where the logarithm is concave,
-    /// the curvature is that without it.
-    #[inline(always)]
-    pub(super) fn arrival_slopes(&self, weight: S, end: [S; 4]) -> ([S; 4], Matrix<S>) {
+    /// The slopes of [`arrival`](Self::arrival), the upper triangle of its curvature, and zeros for
+    /// the torque before. Where the logarithm is concave, the curvature is that without it.
+    #[inline(never)]
+    pub(super) fn arrival_slopes(&self, weight: S, end: [S; 4]) -> [S; 20] {
         let x = difference(end.into(), State::UPRIGHT);
-        let p_x = self.apply(x);
-        let weight = (weight + weight) / (dot(p_x, x) + self.near);
-        (p_x.map(|x| x * weight), self.regulator.cost_to_go.map(|row| row.map(|x| x * weight)))
+        let [s1, s2, s3, s4] = self.apply(x);
+        let weight = (weight + weight) / (dot([s1, s2, s3, s4], x) + self.near);
+        let [p1, p2, p3, p4] = self.regulator.cost_to_go;
+        let ([_, p22, p23, p24], [_, _, p33, p34], [.., p44], o) = (p2, p3, p4, S::ZERO);
+        let [p11, p12, p13, p14] = p1;
+        let slopes =
+            [s1, s2, s3, s4, p11, p12, p13, p14, p22, p23, p24, p33, p34, p44, o, o, o, o, o, o];
+        slopes.map(|x| x * weight)
     }
 
     /// P x.
