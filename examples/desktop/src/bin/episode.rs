@@ -12,7 +12,7 @@ use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 use clap::Parser;
-use desktop::{animation, bang_bang, write};
+use desktop::{animation, bang_bang, data_url, write};
 
 /// Draws an episode as an animated SVG, about three times as fast as real time.
 #[derive(Parser)]
@@ -43,18 +43,11 @@ fn main() -> anyhow::Result<()> {
     };
     let svg = animation::svg(&states, delay);
     if let Some(definition) = &options.definition {
-        write(definition, data_url(&svg))?;
+        write(definition, data_url("balance.svg", &svg))?;
     }
     write(&options.out, svg)?;
     println!("{}: {} frames", options.out.display(), states.len());
     Ok(())
-}
-
-/// Defines the picture `balance.svg` of a Markdown page as a URL that contains it.
-fn data_url(svg: &str) -> String {
-    let svg = svg.replace('\n', "").replace(' ', "%20");
-    let svg = svg.replace('"', "'").replace('#', "%23");
-    format!("[balance.svg]: data:image/svg+xml,{svg}\n")
 }
 
 fn bang_bang_episode(rng: Pcg64) -> Vec<State> {
