@@ -1,16 +1,17 @@
 //! A user's tasks run alone and in batches with equal bits, with rewards, ends, resets, parameters,
-//! observations and data of their own.
+//! observations and data of their own. The crate's task without an end is here, too.
 
 use core::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Numbers, Real};
+use acrobot::arithmetic::{Arithmetic, Numbers, Real, Reference};
 use acrobot::batch::VecBatch;
+use acrobot::control::{difference, regulator};
 use acrobot::env::{AcrobotEnv, Env, RenderMode};
 use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::saturate;
 use acrobot::rand_core::Rng;
-use acrobot::task::{ResetBounds, Seen, Task};
-use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
-use bits::balance::Balance;
+use acrobot::task::{Balance, ResetBounds, Seen, Task};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use common::twins::Twins;
 
 /// Bring the tip near a point, m, with little effort, which ends the episode.
@@ -81,8 +82,6 @@ fn own_tasks_run_in_batches_with_equal_bits() {
 
 #[test]
 fn own_tasks_are_environments() {
-    let env = AcrobotEnv::new(Acrobot::<Fast, Balance>::new(0), RenderMode::None);
-    assert_eq!(env.observation_space().high(), [f32::MAX; 6]);
     let env = AcrobotEnv::new(Acrobot::<Fast, Reach>::new(0), RenderMode::None);
     let space = env.observation_space();
     assert_eq!(space.high(), [4.0, 4.0, 20.0, f32::MAX, f32::MAX]);
@@ -90,12 +89,42 @@ fn own_tasks_are_environments() {
 }
 
 #[test]
-fn rewards_ends_and_limits_are_the_tasks() {
-    let mut acrobot = TimeLimit::of(Acrobot::<Fast, Balance>::new(42));
-    let first = acrobot.step(Action::Zero);
-    assert!((0.7..1.0).contains(&first.reward), "{first:?}");
-    let length = (2..).find(|_| acrobot.step(Action::Zero).done());
-    assert_eq!(length, Some(200));
+fn a_reward_of_1_is_upright() {
+    fn check<A: Arithmetic>() {
+        let mut acrobot = Acrobot::<A, Balance>::hanging(Pcg64::new(0));
+        assert_eq!(acrobot.step(Action::Zero).reward, 0.0);
+        for (theta2, rewards) in [(0.0, 1.0..=1.0), (1e-3, 0.9999..=0.9999999)] {
+            let state = State { theta2, ..State::UPRIGHT };
+            acrobot.set_state(state.cast()).unwrap();
+            assert!(rewards.contains(&acrobot.step(Action::Zero).reward));
+        }
+    }
+    check::<Fast>();
+    check::<Reference>();
+}
+
+/// Without a controller the acrobot falls, which ends no episode either.
+#[test]
+fn a_regulator_with_the_tasks_motor_stays_upright() {
+    let mut acrobot = TimeLimit::of(Acrobot::<Portable, Balance>::new(0));
+    let [.., largest] = acrobot.params().torques;
+    acrobot.set_state(State::UPRIGHT).unwrap();
+    let q: [[f64; 4]; 4] = core::array::from_fn(|i| core::array::from_fn(|j| f64::from(i == j)));
+    let regulator = regulator(acrobot.inner().pendulum(), 0.0, &q, 1.0).unwrap();
+    for (seed, is_controlled) in (0..100).flat_map(|seed| [(seed, true), (seed, false)]) {
+        acrobot.reset_with_seed(seed);
+        let first = difference(acrobot.state(), State::UPRIGHT);
+        assert!(first.iter().all(|x| x.abs() < 0.05 + 1e-6), "{first:?}");
+        let mut lowest = 1.0_f32;
+        for step_number in 1..=500 {
+            let torque = regulator.torque(difference(acrobot.state(), State::UPRIGHT));
+            let torque = if is_controlled { saturate(torque, largest) } else { 0.0 };
+            let step = acrobot.step_torque(torque).unwrap();
+            assert_eq!((step.terminated, step.truncated), (false, step_number == 500));
+            lowest = lowest.min(step.reward);
+        }
+        assert_eq!(lowest > 0.8, is_controlled, "{seed}: {lowest}");
+    }
 }
 
 /// An acrobot and a batch hang at the point that they are given.

@@ -26,7 +26,7 @@ fn errors_name_the_value_and_the_rule() {
         (
             // Subnormal in `f32`: NEON of 32-bit ARM would take it for 0.
             Params { max_velocity1: 1.1754942e-38, ..Params::DEFAULT }.validate(),
-            "max_velocity1 must be from 1.2e-38 to 3.4e38 rad/s, \
+            "max_velocity1 must be at least 1.2e-38 rad/s, \
                 got 0.000000000000000000000000000000000000011754942",
         ),
         (
@@ -137,6 +137,24 @@ fn results_that_are_not_finite_keep_the_angles_and_stop() {
         acrobot.set_params(Params::default()).unwrap();
         acrobot.step(Action::Positive);
         assert_ne!(acrobot.state().dtheta1, A::Scalar::ZERO);
+    }
+    in_every_arithmetic!(check);
+}
+
+#[test]
+fn infinite_bounds_bound_no_velocity_that_an_observation_can_hold() {
+    fn check<A: Arithmetic>() {
+        let mut acrobot = Acrobot::<A>::new(0);
+        let [infinite, dt] = [f64::INFINITY, 1e-10].map(A::Scalar::from_f64);
+        let (max_velocity1, max_velocity2) = (infinite, infinite);
+        let params = Params { max_velocity1, max_velocity2, dt, ..Params::default() };
+        acrobot.set_params(params).unwrap();
+        acrobot.set_state(State::from([0.0, 0.0, 1e10, 0.0]).cast()).unwrap();
+        let [.., dtheta1, _] = acrobot.step(Action::Zero).observation;
+        assert!(dtheta1 > 9e9, "{dtheta1}");
+        // As a number, so that JSON can hold it, and no velocity in `f64` is beyond.
+        let Params { max_velocity1, max_velocity2, .. } = *acrobot.params();
+        assert_eq!([max_velocity1, max_velocity2].map(Real::to_f64), [f64::from(f32::MAX); 2]);
     }
     in_every_arithmetic!(check);
 }

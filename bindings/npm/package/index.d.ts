@@ -56,9 +56,9 @@ export interface Params {
   gravity: number;
   /** Duration of a step, s; above 0. Default: 0.2. */
   dt: number;
-  /** Bound of |dtheta1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default: 4π. */
+  /** Bound of |dtheta1| after a step, rad/s; at least 1.2e-38, Infinity for none. Default: 4π. */
   maxVelocity1: number;
-  /** Bound of |dtheta2| after a step, rad/s; from 1.2e-38 to 3.4e38. Default: 9π. */
+  /** Bound of |dtheta2| after a step, rad/s; at least 1.2e-38, Infinity for none. Default: 9π. */
   maxVelocity2: number;
   /** Torques of the three actions, counter-clockwise, N m; finite. Default: [-1, 0, 1]. */
   torques: readonly [number, number, number];
