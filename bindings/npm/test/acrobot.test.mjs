@@ -110,6 +110,35 @@ test("a swing-up's steps are those that dm_control recorded", () => {
   assert.throws(() => new Acrobot().restore(acrobot.snapshot()), rule);
 });
 
+test("the digests of other tasks are those of the crate `bits`", () => {
+  const source = new URL("../../../tests/bits/src/episodes.rs", import.meta.url);
+  for (const task of ["swingup", "balance"]) {
+    let digest = 0xcbf29ce484222325n;
+    const add = (word) => {
+      digest = BigInt.asUintN(64, (digest ^ BigInt(word)) * 0x100000001b3n);
+    };
+    for (const [theta1, theta2] of [[3, 0.2], [0.5, 0]]) {
+      const acrobot = new Acrobot({ task });
+      acrobot.state = { theta1, theta2, dtheta1: 0, dtheta2: 0 };
+      for (let steps = 0; steps < 100; steps++) {
+        const { observation, reward } = acrobot.step(acrobot.state.dtheta1 > 0 ? 0 : 2);
+        const numbers = Float64Array.from(Object.values(acrobot.state));
+        new BigUint64Array(numbers.buffer).forEach(add);
+        new Uint32Array(Float32Array.of(...observation, reward).buffer).forEach(add);
+      }
+    }
+    const expected = RegExp(`${task.toUpperCase()}: .*, 0x(\\w+)\\]`);
+    const [, inFast] = expected.exec(readFileSync(source, "utf8"));
+    assert.equal(digest, BigInt(`0x${inFast.replaceAll("_", "")}`));
+  }
+});
+
+test("a bound of velocity may be infinite", () => {
+  const acrobot = new Acrobot({ params: { dt: 1e-6, maxVelocity1: Infinity } });
+  acrobot.state = { theta1: 0, theta2: 0, dtheta1: 1000, dtheta2: 0 };
+  assert.ok(acrobot.step(1).observation[4] > 999);
+});
+
 test("random actions with a seed are Gymnasium's", () => {
   const acrobot = new Acrobot();
   // space.seed(42) and space.sample() of Gymnasium 1.4.0: Discrete(3), MultiDiscrete([3] * 6).

@@ -4,13 +4,14 @@ mod batch;
 mod engine;
 mod pool;
 mod single;
+mod task;
 
 use std::fmt::{self, Display, Formatter};
 
 use acrobot::arithmetic::{Damped, Host, Real};
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::Dynamics;
-use acrobot::task::{Gymnasium, ResetBounds, Swingup, Task};
+use acrobot::task::{Balance, Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::{Acrobot, Error, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
@@ -20,6 +21,8 @@ use pyo3::pyclass::boolean_struct::False;
 use pyo3::types::PyBytes;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+
+use task::AnyTask;
 
 pyo3::import_exception!(gymnasium.error, InvalidAction);
 
@@ -34,9 +37,13 @@ mod _native {
     #[pymodule_export]
     const SWINGUP_MAX_STEPS: u32 = Swingup::MAX_STEPS.get();
     #[pymodule_export]
+    const BALANCE_MAX_STEPS: u32 = Balance::MAX_STEPS.get();
+    #[pymodule_export]
     const BOUND: f64 = Gymnasium::RESET_BOUNDS.high();
     #[pymodule_export]
     const SWINGUP_BOUND: f64 = Swingup::RESET_BOUNDS.high();
+    #[pymodule_export]
+    const BALANCE_BOUND: f64 = Balance::RESET_BOUNDS.high();
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
@@ -62,21 +69,21 @@ fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<Py
 }
 
 /// The torque of a continuous action, N m, which is within the smallest and the largest torque.
-/// Gymnasium's task has torques as actions. In a swing-up the action 1 is the largest torque, −1
-/// the smallest and 0 none.
-fn torque_of(task: &str, action: f64, low: f64, high: f64) -> f64 {
+/// In a swing-up the action 1 is the largest torque, −1 the smallest and 0 none. The other tasks
+/// have torques as actions.
+fn torque_of(task: AnyTask, action: f64, low: f64, high: f64) -> f64 {
     let torque = match task {
-        Gymnasium::NAME => action,
-        _ => match action.clamp(-1.0, 1.0) {
+        AnyTask::Swingup => match action.clamp(-1.0, 1.0) {
             action if action < 0.0 => action * -low,
             action => action * high,
         },
+        _ => action,
     };
     torque.max(low).min(high)
 }
 
-/// Python's names of the parameters, in the order of the crate's numbers. Gymnasium has one moment
-/// of inertia for both links, `LINK_MOI`.
+/// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI`, Gymnasium's,
+/// is that of both links.
 const NAMES: [&str; 18] = [
     "LINK_LENGTH_1",
     "LINK_LENGTH_2",
@@ -119,16 +126,13 @@ fn rejected(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// The error of a rejected parameter of a task, of all environments or of one, with Python's name.
-fn invalid(task: &str, error: Error, index: Option<usize>) -> PyErr {
+/// The error of a rejected parameter, of all environments or of one, with Python's name.
+fn invalid(error: Error, index: Option<usize>) -> PyErr {
     let names: [(_, f64); NAMES.len()] = Params::DEFAULT.numbers();
     let Some(place) = names.iter().position(|(name, _)| *name == error.name()) else {
         return rejected(error);
     };
-    let name = match NAMES[place] {
-        "LINK_MOI_1" | "LINK_MOI_2" if task == Gymnasium::NAME => "LINK_MOI",
-        name => name,
-    };
+    let name = NAMES[place];
     let torque = places(name).position(|each| each == place).filter(|_| name == "AVAIL_TORQUE");
     named(error, Name(name, [index, torque]))
 }

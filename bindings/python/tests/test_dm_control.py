@@ -47,13 +47,39 @@ def test_a_step_after_the_time_limit_resets():
     assert short.control_timestep() == 0.025 and env.control_timestep() == 0.01
 
 
+@pytest.mark.parametrize("options", [{"n_sub_steps": 3}, {"control_timestep": 0.03}])
+def test_a_step_lasts_as_long_as_its_sub_steps(options):
+    """dm_control's arguments and rules: `dm_control/rl/control.py`."""
+    env = dm_control.load("acrobot", "swingup", {"random": 3, "time_limit": 0.09}, options)
+    twin = dm_control.load("acrobot", "swingup", {"random": 3}, {"legacy_step": True})
+    assert env.reset().first() and twin.reset().first()
+    assert env.control_timestep() == 0.03
+    for action in 0.5, -0.7, 0.1:
+        step = env.step(action)
+        expected = [twin.step(action) for _ in range(3)][-1]
+        assert step.reward == expected.reward
+        assert (env.gymnasium.state == twin.gymnasium.state).all()
+    assert step.last()
+
+
 @pytest.mark.parametrize(
     ("error", "message", "arguments"),
     [
         (ValueError, "domain_name must be .*, got 'reacher'", ["reacher", "swingup"]),
         (ValueError, "task_name must be one of .*, got 'balance'", ["acrobot", "balance"]),
         (ValueError, "time_limit must be above 0 s", ["acrobot", "swingup", {"time_limit": 0}]),
-        (TypeError, "'n_sub_steps'", ["acrobot", "swingup", None, {"n_sub_steps": 2}]),
+        *(
+            (ValueError, message, ["acrobot", "swingup", None, options])
+            for message, options in [
+                ("n_sub_steps must be None", {"n_sub_steps": 2, "control_timestep": 0.02}),
+                ("n_sub_steps must be an integer of at least 1, got 0", {"n_sub_steps": 0}),
+                (
+                    "control_timestep / dt must be an integer .*, got 1.5",
+                    {"control_timestep": 0.015},
+                ),
+                ("legacy_step must be True: .*, got False", {"legacy_step": False}),
+            ]
+        ),
     ],
 )
 def test_invalid_arguments_are_rejected(error, message, arguments):

@@ -6,10 +6,10 @@ import unittest.mock
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, Uniform
+from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotVectorEnv, Uniform
 from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
-from vectors import CONTINUOUS, KINDS, SWINGUPS, V1, rejects
+from vectors import BALANCE, CONTINUOUS, KINDS, SWINGUPS, V1, rejects
 
 
 @pytest.fixture
@@ -20,8 +20,8 @@ def env():
     return env
 
 
-@pytest.mark.parametrize("name", [V1, CONTINUOUS, *SWINGUPS])
-@pytest.mark.filterwarnings("ignore:.*infinity")
+@pytest.mark.parametrize("name", [V1, CONTINUOUS, BALANCE, *SWINGUPS])
+@pytest.mark.filterwarnings("ignore:.*infinity", "ignore:.*normalized space")  # N m, as Pendulum
 def test_gymnasium_checks_pass_without_a_warning(name):
     check_env(gymnasium.make(name, render_mode="rgb_array").unwrapped)
 
@@ -35,13 +35,32 @@ def test_registration_and_spaces_are_those_of_gymnasium():
     for name in ("observation_space", "action_space"):
         assert getattr(ours, name) == getattr(theirs, name)
     assert ours.metadata["render_fps"] == theirs.metadata["render_fps"]
-    limits = {V1: 500, CONTINUOUS: 500} | dict.fromkeys(SWINGUPS, 1000)
+    limits = {V1: 500, CONTINUOUS: 500, BALANCE: 500} | dict.fromkeys(SWINGUPS, 1000)
     for name, limit in limits.items():
         env = gymnasium.make(name)
-        assert env.spec.reward_threshold == (None if name in SWINGUPS else -100)
+        assert env.spec.reward_threshold == (-100 if name in (V1, CONTINUOUS) else None)
         env.reset(seed=1)
         ends = [env.step(1 if name == V1 else [0.0])[3] for _ in range(limit)]
         assert ends == [False] * (limit - 1) + [True]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_videos_run_in_real_time(kind):
+    env, default = kind(dt=0.05), kind()
+    env.dt = 0.04
+    fps = 15 if default.dt == 0.2 else 1 / default.dt
+    assert [env.metadata["render_fps"], default.metadata["render_fps"]] == [25, fps]
+
+
+def test_a_bound_of_velocity_may_be_infinite():
+    for env in AcrobotEnv(MAX_VEL_1=np.inf), AcrobotVectorEnv(2, MAX_VEL_1=np.inf):
+        env.reset(seed=1)
+        env.state = np.broadcast_to([0.0, 0.0, 1000.0, 0.0], env.state.shape)
+        env.dt = 1e-6
+        env.step(env.action_space.sample())
+        assert (env.state[..., 2] > 999).all()
+        high = getattr(env, "single_observation_space", env.observation_space).high
+        assert high[4] == np.inf and high[5] < 30
 
 
 def test_pictures(env):

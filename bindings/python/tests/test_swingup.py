@@ -5,13 +5,23 @@ from pathlib import Path
 import gymnasium as gym
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotSwingupEnv, AcrobotSwingupVectorEnv, Uniform
-from acrobot_rs._native import Acrobot, Batch
+from acrobot_rs import AcrobotBalanceEnv, AcrobotBalanceVectorEnv, AcrobotContinuousEnv
+from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotEnv, AcrobotSwingupEnv
+from acrobot_rs import AcrobotSwingupVectorEnv, Uniform
+from acrobot_rs._native import Acrobot
 from gymnasium.error import InvalidAction, ResetNeeded
 from vectors import SWINGUPS, rejects
 
 #: With the column of its rewards.
 TASKS = pytest.mark.parametrize(("name", "column"), list(zip(SWINGUPS, (15, 16), strict=True)))
+BOTH = pytest.mark.parametrize(
+    ("kind", "many"),
+    [
+        (AcrobotContinuousEnv, AcrobotContinuousVectorEnv),
+        (AcrobotSwingupEnv, AcrobotSwingupVectorEnv),
+        (AcrobotBalanceEnv, AcrobotBalanceVectorEnv),
+    ],
+)
 RECORDED = np.loadtxt(Path(__file__).parents[3] / "tests/data/swingup.txt")
 
 
@@ -108,20 +118,22 @@ def test_other_parameters_are_rejected(kind):
         env.LINK_MOI = 1.0
 
 
-def test_the_default_parameters_are_those_of_rust():
-    untouched = Acrobot(continuous=True, task="swingup")
-    assert AcrobotSwingupEnv()._native.__getstate__() == untouched.__getstate__()
-    envs = AcrobotSwingupVectorEnv(1)
-    untouched = Batch(1, str(envs.np_random_seed), 1000, "NextStep", "swingup", True)
-    assert envs._native.__getstate__() == untouched.__getstate__()
+@BOTH
+def test_the_default_parameters_are_those_of_rust(kind, many):
+    untouched = Acrobot(continuous=True, task=kind._TASK)
+    assert kind()._native.__getstate__() == untouched.__getstate__()
+    assert many().parameters == kind().parameters
 
 
-@pytest.mark.parametrize("name", AcrobotSwingupEnv._NAMES)
-def test_each_parameter_changes_both_environments_alike(name):
-    changes = {"book_or_nips": "nips", "AVAIL_TORQUE": [-1.0, 3.0, 0.5], "MAX_VEL_1": 1.0}
+@BOTH
+@pytest.mark.parametrize("name", AcrobotEnv._NAMES)
+def test_each_parameter_changes_both_environments_alike(name, kind, many):
+    if name == "LINK_MOI" and name not in kind._NAMES:
+        return
+    changes = {"book_or_nips": "nips", "AVAIL_TORQUE": [-0.5, 0.4, 0.2], "dt": 0.1}
     states = []
-    for value in getattr(AcrobotSwingupEnv, name), (changes | {"MAX_VEL_2": 1.0}).get(name, 0.2):
-        env, envs = AcrobotSwingupEnv(**{name: value}), AcrobotSwingupVectorEnv(3, **{name: value})
+    for change in {}, {name: changes.get(name, 0.25)}:
+        env, envs = kind(**change), many(3, **change)
         assert env.observation_space == envs.single_observation_space
         assert env.action_space == envs.single_action_space
         for each, shape in (env, (4,)), (envs, (3, 4)):
@@ -131,7 +143,7 @@ def test_each_parameter_changes_both_environments_alike(name):
             env.step([action])
             envs.step([[action]] * 3)
         if name != "torque_noise_max":
-            assert np.abs(envs.state - env.state).max() < 1e-5
+            assert np.abs(envs.state - env.state).max() < 2e-5
         states.append(env.state)
     # Neither the equations of motion nor the rewards of the recording contain it.
     assert (states[0] == states[1]).all() == (name == "LINK_LENGTH_2")

@@ -1,7 +1,7 @@
 """Gymnasium's Acrobot in Rust: bit-identical episodes, and a much faster vector environment.
 
-Importing this package registers ``Acrobot-v1`` and ``AcrobotContinuous-v0``, and dm_control's
-``AcrobotSwingup-v0`` and ``AcrobotSwingupSparse-v0``, all after ``acrobot_rs/``:
+Importing this package registers ``Acrobot-v1``, ``AcrobotContinuous-v0`` and ``AcrobotBalance-v0``,
+and dm_control's ``AcrobotSwingup-v0`` and ``AcrobotSwingupSparse-v0``, all after ``acrobot_rs/``:
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -17,7 +17,8 @@ from importlib.metadata import version
 from gymnasium.envs.registration import register
 
 from acrobot_rs import policy
-from acrobot_rs._native import MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS
+from acrobot_rs._native import BALANCE_MAX_STEPS, MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS
+from acrobot_rs.balance import AcrobotBalanceEnv, AcrobotBalanceVectorEnv
 from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv
 from acrobot_rs.parameters import LogUniform, Normal, Uniform
 from acrobot_rs.swingup import (
@@ -29,6 +30,8 @@ from acrobot_rs.swingup import (
 from acrobot_rs.vector import AcrobotContinuousVectorEnv, AcrobotVectorEnv
 
 __all__ = [
+    "AcrobotBalanceEnv",
+    "AcrobotBalanceVectorEnv",
     "AcrobotContinuousEnv",
     "AcrobotContinuousVectorEnv",
     "AcrobotEnv",
@@ -47,6 +50,7 @@ __version__ = version("acrobot-rs")
 for _kind, _id, _steps, _threshold in (
     ("Acrobot", "Acrobot-v1", MAX_STEPS, REWARD_THRESHOLD),
     ("AcrobotContinuous", "AcrobotContinuous-v0", MAX_STEPS, REWARD_THRESHOLD),
+    ("AcrobotBalance", "AcrobotBalance-v0", BALANCE_MAX_STEPS, None),
     ("AcrobotSwingup", "AcrobotSwingup-v0", SWINGUP_MAX_STEPS, None),
     ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", SWINGUP_MAX_STEPS, None),
 ):

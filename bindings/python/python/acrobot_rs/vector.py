@@ -281,7 +281,7 @@ class AcrobotVectorEnv(
     def get_parameter(self, name: str) -> NDArray[Any]:
         """A parameter of each environment, in a new array with a row of 3 of ``AVAIL_TORQUE``."""
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
-        if not isinstance(value, Drawn):
+        if value is not None and not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
         rows = np.empty((self.num_envs, 3 if is_row else 1))
         self._native.get(name, rows)
