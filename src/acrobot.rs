@@ -63,8 +63,8 @@ impl<O> Step<O> {
 /// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any
 /// serde format can hold it, also in flattened structs and in tagged enums.
 ///
-/// The first field holds the type, the version (4), the [name of the task](Task::NAME), the [name
-/// of the arithmetic](Arithmetic::NAME) and whether it has friction. Loading rejects another one,
+/// The first field holds the type, the version (4), the [name of the task](Task::NAME) and the [name
+/// of the arithmetic](Arithmetic::NAME), with or without friction. Loading rejects another one,
 /// and what the setters reject; postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
 /// [`TimeLimit`](crate::TimeLimit), is the size of a buffer for postcard.
 ///

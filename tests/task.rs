@@ -3,7 +3,7 @@
 
 use core::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Numbers, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::batch::VecBatch;
 use acrobot::control::{difference, regulator};
 use acrobot::env::{AcrobotEnv, Env, RenderMode};
@@ -89,41 +89,30 @@ fn own_tasks_are_environments() {
 }
 
 #[test]
-fn a_reward_of_1_is_upright() {
-    fn check<A: Arithmetic>() {
-        let mut acrobot = Acrobot::<A, Balance>::hanging(Pcg64::new(0));
-        assert_eq!(acrobot.step(Action::Zero).reward, 0.0);
-        for (theta2, rewards) in [(0.0, 1.0..=1.0), (1e-3, 0.9999..=0.9999999)] {
-            let state = State { theta2, ..State::UPRIGHT };
-            acrobot.set_state(state.cast()).unwrap();
-            assert!(rewards.contains(&acrobot.step(Action::Zero).reward));
-        }
-    }
-    check::<Fast>();
-    check::<Reference>();
+fn a_balanced_acrobot_is_upright_with_a_reward_of_1() {
+    let mut acrobot = Acrobot::<Fast, Balance>::hanging(Pcg64::new(0));
+    assert_eq!(acrobot.step(Action::Zero).reward, 0.0);
+    acrobot.set_state(State::UPRIGHT).unwrap();
+    assert_eq!(acrobot.step(Action::Zero).reward, 1.0);
 }
 
-/// Without a controller the acrobot falls, which ends no episode either.
+/// No state ends the episode, not even those of an acrobot that falls without torque.
 #[test]
-fn a_regulator_with_the_tasks_motor_stays_upright() {
+fn a_regulator_with_the_tasks_motor_balances() {
     let mut acrobot = TimeLimit::of(Acrobot::<Portable, Balance>::new(0));
-    let [.., largest] = acrobot.params().torques;
+    let q = [0, 1, 2, 3].map(|i| core::array::from_fn(|j| f64::from(i == j)));
     acrobot.set_state(State::UPRIGHT).unwrap();
-    let q: [[f64; 4]; 4] = core::array::from_fn(|i| core::array::from_fn(|j| f64::from(i == j)));
     let regulator = regulator(acrobot.inner().pendulum(), 0.0, &q, 1.0).unwrap();
-    for (seed, is_controlled) in (0..100).flat_map(|seed| [(seed, true), (seed, false)]) {
+    for (seed, largest) in (0..100).flat_map(|seed| [(seed, 0.0), (seed, 10.0)]) {
         acrobot.reset_with_seed(seed);
-        let first = difference(acrobot.state(), State::UPRIGHT);
-        assert!(first.iter().all(|x| x.abs() < 0.05 + 1e-6), "{first:?}");
-        let mut lowest = 1.0_f32;
+        let mut rewards = Vec::new();
         for step_number in 1..=500 {
-            let torque = regulator.torque(difference(acrobot.state(), State::UPRIGHT));
-            let torque = if is_controlled { saturate(torque, largest) } else { 0.0 };
-            let step = acrobot.step_torque(torque).unwrap();
+            let deviation = difference(acrobot.state(), State::UPRIGHT);
+            let step = acrobot.step_torque(saturate(regulator.torque(deviation), largest)).unwrap();
             assert_eq!((step.terminated, step.truncated), (false, step_number == 500));
-            lowest = lowest.min(step.reward);
+            rewards.push(step.reward);
         }
-        assert_eq!(lowest > 0.8, is_controlled, "{seed}: {lowest}");
+        assert_eq!(rewards.iter().all(|reward| *reward > 0.9), largest > 0.0, "{seed}");
     }
 }
 

@@ -59,23 +59,16 @@ impl Batch {
 
     /// Sets a parameter of all acrobots to one value, or to a value for each.
     fn set(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
-        let engine = &mut alone(slf)?.engine;
         let set = |engine: &mut _| with_batch!(engine, many => many.set(name, &values));
-        if !name.starts_with("FRICTION") {
-            return set(engine);
-        }
-        let is_0 = |value: &Bound<'_, PyAny>| value.extract().is_ok_and(|x: f64| x == 0.0);
-        engine.change_friction(!values.iter().all(is_0), set)
+        let engine = &mut alone(slf)?.engine;
+        if name.starts_with("FRICTION") { engine.change_friction(set) } else { set(engine) }
     }
 
     /// Sets a parameter that each reset draws.
     fn set_drawn(slf: &Bound<'_, Self>, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
-        let engine = &mut alone(slf)?.engine;
         let set = |engine: &mut _| with_batch!(engine, many => many.set_drawn(name, drawn));
-        if !name.starts_with("FRICTION") {
-            return set(engine);
-        }
-        engine.change_friction(true, set)
+        let engine = &mut alone(slf)?.engine;
+        if name.starts_with("FRICTION") { engine.change_friction(set) } else { set(engine) }
     }
 
     /// Writes the numbers of a parameter: a row for each acrobot, of three of `AVAIL_TORQUE`.
@@ -186,8 +179,9 @@ impl Batch {
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
         let task = match engine {
-            Engine::Fast(_) | Engine::DampedFast(_) => 16_384,
-            _ => 1024,
+            Engine::Reference(_) | Engine::DampedReference(_) | Engine::Host(_) => 1024,
+            Engine::ReferenceSwingup(_) | Engine::ReferenceBalance(_) => 1024,
+            _ => 16_384,
         };
         let tasks = len.div_ceil(task);
         match tasks.min(this.threads.get() as usize) {

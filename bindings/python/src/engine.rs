@@ -1,22 +1,20 @@
-//! A batch in one of six arithmetics.
-
-use std::num::NonZeroU32;
+//! A batch of one of nine pairs of arithmetic and task.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
-use acrobot::batch::{Autoreset, Member, StepBuffers, VecBatch};
-use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::task::{Draw, Draws};
+use acrobot::batch::{StepBuffers, VecBatch};
+use acrobot::numpy::SeedSequence;
+use acrobot::task::{Balance, Draw, Draws, Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 
-use crate::task::AnyTask;
 use crate::{
-    InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, torque_of, with,
+    InvalidAction, Name, Params, check_states, invalid, load, must_be, places, rejected, to_bytes,
+    torque_of, with,
 };
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
@@ -45,173 +43,94 @@ impl<'py> Inputs<'py> {
 #[derive(Serialize, Deserialize)]
 pub enum Engine {
     Fast(Many<Fast>),
-    /// Computes as Gymnasium does.
-    Host(Many<Host>),
-    Reference(Many<Reference>),
     DampedFast(Many<Damped<Fast>>),
-    DampedHost(Many<Damped<Host>>),
+    /// Computes as Gymnasium does, without friction.
+    Host(Many<Host>),
+    Swingup(Many<Damped<Fast>, Swingup>),
+    Balance(Many<Damped<Fast>, Balance>),
+    Reference(Many<Reference>),
     DampedReference(Many<Damped<Reference>>),
+    ReferenceSwingup(Many<Damped<Reference>, Swingup>),
+    ReferenceBalance(Many<Damped<Reference>, Balance>),
 }
 
 impl Engine {
-    /// With Gymnasium's parameters.
     pub fn new(name: &str, len: usize, seed: SeedSequence) -> PyResult<Self> {
-        let task = AnyTask::of(name.trim_end_matches("_float64"));
         Ok(match name {
-            "gymnasium" => Self::Host(Many::new(task, len, seed)?),
-            _ if name.ends_with("_float64") => Self::Reference(Many::new(task, len, seed)?),
-            _ => Self::Fast(Many::new(task, len, seed)?),
+            "gymnasium" => Self::Host(Many::new(len, seed)?),
+            "swingup" => Self::Swingup(Many::new(len, seed)?),
+            "balance" => Self::Balance(Many::new(len, seed)?),
+            "acrobot_float64" => Self::Reference(Many::new(len, seed)?),
+            "swingup_float64" => Self::ReferenceSwingup(Many::new(len, seed)?),
+            "balance_float64" => Self::ReferenceBalance(Many::new(len, seed)?),
+            _ => Self::Fast(Many::new(len, seed)?),
         })
     }
 
-    /// Changes friction, to other values than 0 if `damps`. Without friction, an arithmetic without
-    /// it saves time.
-    pub fn change_friction(
-        &mut self,
-        damps: bool,
-        change: impl FnOnce(&mut Self) -> PyResult<()>,
-    ) -> PyResult<()> {
-        let damped = match self {
-            Self::Fast(many) if damps => Some(Self::DampedFast(many.converted()?)),
-            Self::Host(many) if damps => Some(Self::DampedHost(many.converted()?)),
-            Self::Reference(many) if damps => Some(Self::DampedReference(many.converted()?)),
-            _ => None,
-        };
-        if let Some(mut damped) = damped {
+    /// Changes friction. Gymnasium's task has an arithmetic with friction only where there is some,
+    /// because another one saves time.
+    pub fn change_friction(&mut self, change: impl Fn(&mut Self) -> PyResult<()>) -> PyResult<()> {
+        if let Err(error) = change(self) {
+            let mut damped = match self {
+                Self::Fast(many) => Self::DampedFast(converted(many)?),
+                Self::Reference(many) => Self::DampedReference(converted(many)?),
+                _ => return Err(error),
+            };
             change(&mut damped)?;
             *self = damped;
-        } else {
-            change(self)?;
         }
-        match self {
-            Self::DampedFast(many) if !many.is_damped() => *self = Self::Fast(many.converted()?),
-            Self::DampedHost(many) if !many.is_damped() => *self = Self::Host(many.converted()?),
-            Self::DampedReference(many) if !many.is_damped() => {
-                *self = Self::Reference(many.converted()?);
-            }
-            _ => {}
+        let undamped = match self {
+            Self::DampedFast(many) => converted(many).map(Self::Fast),
+            Self::DampedReference(many) => converted(many).map(Self::Reference),
+            _ => return Ok(()),
+        };
+        // It fails where there is friction.
+        if let Ok(undamped) = undamped {
+            *self = undamped;
         }
         Ok(())
     }
 }
 
-/// Does something with the batch in an engine, whatever its arithmetic.
+/// The same batch in the arithmetic with friction, or in that without: both have one snapshot.
+fn converted<A: Arithmetic, B: Arithmetic>(many: &Many<A>) -> PyResult<Many<B>> {
+    load(&to_bytes(many)?)
+}
+
+/// Does something with the batch in an engine, whatever its arithmetic and task.
 macro_rules! with_batch {
     ($engine:expr, $many:ident => $result:expr) => {
         match $engine {
             $crate::engine::Engine::Fast($many) => $result,
-            $crate::engine::Engine::Host($many) => $result,
-            $crate::engine::Engine::Reference($many) => $result,
             $crate::engine::Engine::DampedFast($many) => $result,
-            $crate::engine::Engine::DampedHost($many) => $result,
+            $crate::engine::Engine::Host($many) => $result,
+            $crate::engine::Engine::Swingup($many) => $result,
+            $crate::engine::Engine::Balance($many) => $result,
+            $crate::engine::Engine::Reference($many) => $result,
             $crate::engine::Engine::DampedReference($many) => $result,
+            $crate::engine::Engine::ReferenceSwingup($many) => $result,
+            $crate::engine::Engine::ReferenceBalance($many) => $result,
         }
     };
 }
 pub(crate) use with_batch;
 
 /// A batch, and memory for its inputs. Numbers are `f64` outside, which `f32` becomes exactly.
-#[derive(Deserialize)]
-#[serde(bound = "", try_from = "Snapshot<A::Scalar>")]
-pub struct Many<A: Arithmetic> {
-    pub batch: VecBatch<A, AnyTask>,
+#[derive(Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Many<A: Arithmetic, T: Task = Gymnasium> {
+    pub batch: VecBatch<A, T>,
+    #[serde(skip)]
     actions: Vec<u8>,
     /// Empty if the inputs of the next step are actions.
+    #[serde(skip)]
     torques: Vec<A::Scalar>,
 }
 
-/// A batch of any arithmetic with this scalar.
-#[derive(Serialize, Deserialize)]
-#[serde(bound = "")]
-struct Snapshot<S: Real> {
-    version: u32,
-    task: AnyTask,
-    max_steps: NonZeroU32,
-    autoreset: Autoreset,
-    own_params: bool,
-    draws: Params<Draw<S>>,
-    members: Vec<Fields<S>>,
-}
-
-/// The fields of a [`Member`].
-type Fields<S> = (Params<S>, State<S>, u32, bool, Pcg64);
-
-/// Incremented whenever the fields of a snapshot change.
-const VERSION: u32 = 1;
-
-impl<A: Arithmetic> Serialize for Many<A> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.snapshot().serialize(serializer)
-    }
-}
-
-impl<A: Arithmetic> TryFrom<Snapshot<A::Scalar>> for Many<A> {
-    type Error = String;
-
-    fn try_from(snapshot: Snapshot<A::Scalar>) -> Result<Self, String> {
-        let Snapshot { version, task, max_steps, autoreset, own_params, draws, members } = snapshot;
-        if version != VERSION {
-            return Err(must_be("its version", VERSION, version));
-        }
-        let build = || {
-            let mut batch = VecBatch::new(SeedSequence::new(0), members.len())?;
-            if own_params {
-                batch.own_params()?;
-            }
-            for (index, (params, state, elapsed_steps, ended, rng)) in
-                members.into_iter().enumerate()
-            {
-                if index == 0 {
-                    batch.set_params(params)?;
-                }
-                batch.set_member(index, Member { params, state, elapsed_steps, ended, rng })?;
-            }
-            batch.set_draws(Draws::new(draws)?)?;
-            batch.set_max_steps(max_steps);
-            batch.set_autoreset(autoreset);
-            Ok(batch)
-        };
-        build().map_err(|error: Error| error.to_string()).map(|batch| Self::of(task, batch))
-    }
-}
-
-impl<A: Arithmetic> Many<A> {
-    pub fn new(task: AnyTask, len: usize, seed: SeedSequence) -> PyResult<Self> {
-        Ok(Self::of(task, VecBatch::new(seed, len).map_err(out_of_memory)?))
-    }
-
-    fn of(task: AnyTask, mut batch: VecBatch<A, AnyTask>) -> Self {
-        batch.set_task(task);
-        batch.set_reset_bounds(task.reset_bounds());
-        Self { batch, actions: Vec::new(), torques: Vec::new() }
-    }
-
-    fn snapshot(&self) -> Snapshot<A::Scalar> {
-        let batch = &self.batch;
-        let members = (0..batch.len()).filter_map(|index| batch.member(index));
-        Snapshot {
-            version: VERSION,
-            task: *batch.task(),
-            max_steps: batch.max_steps(),
-            autoreset: batch.autoreset(),
-            own_params: batch.has_own_params(),
-            draws: *batch.draws().params(),
-            members: members
-                .map(|one| (one.params, one.state, one.elapsed_steps, one.ended, one.rng))
-                .collect(),
-        }
-    }
-
-    /// The same batch in another arithmetic.
-    fn converted<B: Arithmetic<Scalar = A::Scalar>>(&self) -> PyResult<Many<B>> {
-        self.snapshot().try_into().map_err(PyMemoryError::new_err)
-    }
-
-    /// Whether an acrobot has friction, or a reset could draw it.
-    fn is_damped(&self) -> bool {
-        let drawn = self.batch.draws().params().friction;
-        drawn != Draws::<A::Scalar>::FIXED.friction
-            || (0..self.batch.len()).any(|i| self.params(i).friction != Params::DEFAULT.friction)
+impl<A: Arithmetic, T: Task> Many<A, T> {
+    pub fn new(len: usize, seed: SeedSequence) -> PyResult<Self> {
+        let batch = VecBatch::new(seed, len).map_err(out_of_memory)?;
+        Ok(Self { batch, actions: Vec::new(), torques: Vec::new() })
     }
 
     pub fn params(&self, index: usize) -> Params {
@@ -232,7 +151,7 @@ impl<A: Arithmetic> Many<A> {
         Ok(())
     }
 
-    /// The draws, of which one is to change: a draw of both inertias becomes one of each.
+    /// The draws, of which one is to change. That of `LINK_MOI` becomes one of each link.
     fn draws_beside(&self, name: &str) -> Params<Draw<A::Scalar>> {
         let mut draws = *self.batch.draws().params();
         if name == "LINK_MOI_1" && draws.inertia2 == Draw::<A::Scalar>::AsBefore {
@@ -250,7 +169,7 @@ impl<A: Arithmetic> Many<A> {
         let count = if is_own { self.batch.len() } else { 1 };
         let mut each = Vec::with_capacity(count);
         // An acrobot alone tries them: a rejected value must change no acrobot of the batch.
-        let mut alone = Acrobot::<A>::new(0);
+        let mut alone = Acrobot::<A, T>::new(0);
         for (index, value) in values.iter().cycle().take(count).enumerate() {
             let index_in_name = (values.len() > 1).then_some(index);
             let name = Name(name, [index_in_name, None]);
@@ -326,16 +245,16 @@ impl<A: Arithmetic> Many<A> {
                     let [a, b, c] = params.torques.map(Real::to_f64);
                     (a.min(b).min(c), a.max(b).max(c))
                 };
-                let (first, task) = (bounds(0), *self.batch.task());
+                let first = bounds(0);
                 read(
                     from.as_slice()?,
                     &mut self.torques,
                     |torque| !torque.is_nan(),
                     |index, torque| {
                         let (low, high) = if is_own { bounds(index) } else { first };
-                        A::Scalar::from_f64(torque_of(task, torque.into(), low, high))
+                        A::Scalar::from_f64(torque_of(T::NAME, torque.into(), low, high))
                     },
-                    if task == AnyTask::Swingup {
+                    if T::NAME == Swingup::NAME {
                         "a number from -1 to 1"
                     } else {
                         "a number, N m"
@@ -346,7 +265,11 @@ impl<A: Arithmetic> Many<A> {
     }
 
     /// Steps on this thread, or on all threads of rayon's current pool, into the buffers.
-    pub fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
+    pub fn step(
+        &mut self,
+        buffers: StepBuffers<'_, T::Observation>,
+        parallel: bool,
+    ) -> Result<(), Error> {
         let (actions, torques) = (&self.actions, &self.torques);
         match (torques.is_empty(), parallel) {
             (true, false) => self.batch.step_into(actions, buffers),

@@ -4,7 +4,6 @@ mod batch;
 mod engine;
 mod pool;
 mod single;
-mod task;
 
 use std::fmt::{self, Display, Formatter};
 
@@ -22,8 +21,6 @@ use pyo3::types::PyBytes;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use task::AnyTask;
-
 pyo3::import_exception!(gymnasium.error, InvalidAction);
 
 #[pymodule(gil_used = false)]
@@ -36,8 +33,6 @@ mod _native {
     const MAX_STEPS: u32 = Gymnasium::MAX_STEPS.get();
     #[pymodule_export]
     const SWINGUP_MAX_STEPS: u32 = Swingup::MAX_STEPS.get();
-    #[pymodule_export]
-    const BALANCE_MAX_STEPS: u32 = Balance::MAX_STEPS.get();
     #[pymodule_export]
     const BOUND: f64 = Gymnasium::RESET_BOUNDS.high();
     #[pymodule_export]
@@ -69,11 +64,11 @@ fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<Py
 }
 
 /// The torque of a continuous action, N m, which is within the smallest and the largest torque.
-/// In a swing-up the action 1 is the largest torque, −1 the smallest and 0 none. The other tasks
-/// have torques as actions.
-fn torque_of(task: AnyTask, action: f64, low: f64, high: f64) -> f64 {
+/// In a swing-up the action 1 is the largest torque, −1 the smallest and 0 none. In other tasks
+/// actions are torques.
+fn torque_of(task: &str, action: f64, low: f64, high: f64) -> f64 {
     let torque = match task {
-        AnyTask::Swingup => match action.clamp(-1.0, 1.0) {
+        Swingup::NAME => match action.clamp(-1.0, 1.0) {
             action if action < 0.0 => action * -low,
             action => action * high,
         },
@@ -82,8 +77,8 @@ fn torque_of(task: AnyTask, action: f64, low: f64, high: f64) -> f64 {
     torque.max(low).min(high)
 }
 
-/// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI`, Gymnasium's,
-/// is that of both links.
+/// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both moments
+/// of inertia.
 const NAMES: [&str; 18] = [
     "LINK_LENGTH_1",
     "LINK_LENGTH_2",
@@ -243,9 +238,11 @@ fn render<'py>(
 
 /// Serializes a snapshot, for pickle. The crate's snapshots inside have a version.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {
-    let bytes = postcard::to_stdvec(snapshot);
-    let bytes = bytes.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-    Ok(PyBytes::new(py, &bytes))
+    Ok(PyBytes::new(py, &to_bytes(snapshot)?))
+}
+
+fn to_bytes(snapshot: &impl Serialize) -> PyResult<Vec<u8>> {
+    postcard::to_stdvec(snapshot).map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 
 /// Deserializes a snapshot.

@@ -1,16 +1,14 @@
 //! The single environments: one acrobot, bit-identical to Gymnasium's, or of another task.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host};
-use acrobot::physics::Pendulum;
 use acrobot::task::{Balance, Gymnasium, Swingup, Task};
-use acrobot::{Error, Portable, State, Step};
+use acrobot::{Portable, State, Step};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
-use crate::task::AnyTask;
 use crate::{
     InvalidAction, Name, Params, alone, convert, invalid, load, must_be, named, rejected, render,
     save, shown, torque_of, with,
@@ -29,8 +27,7 @@ pub struct Acrobot {
 /// An acrobot of a task.
 #[derive(Clone, Serialize, Deserialize)]
 enum One {
-    Acrobot(acrobot::Acrobot<Host>),
-    Damped(acrobot::Acrobot<Damped<Host>>),
+    Acrobot(acrobot::Acrobot<Damped<Host>>),
     Swingup(acrobot::Acrobot<Damped<Portable>, Swingup>),
     Balance(acrobot::Acrobot<Damped<Portable>, Balance>),
 }
@@ -40,7 +37,6 @@ macro_rules! with_one {
     ($one:expr, $acrobot:ident => $result:expr) => {
         match $one {
             One::Acrobot($acrobot) => $result,
-            One::Damped($acrobot) => $result,
             One::Swingup($acrobot) => $result,
             One::Balance($acrobot) => $result,
         }
@@ -68,26 +64,8 @@ impl One {
         with_one!(self, acrobot => *acrobot.params())
     }
 
-    /// As [`change_friction`](crate::engine::Engine::change_friction).
     fn set_params(&mut self, params: Params) -> PyResult<()> {
-        fn with<A: Arithmetic<Scalar = f64>, B: Arithmetic<Scalar = f64>>(
-            params: Params,
-            acrobot: &acrobot::Acrobot<A>,
-        ) -> Result<acrobot::Acrobot<B>, Error> {
-            let pendulum = Pendulum::new(params, acrobot.state())?;
-            Ok(acrobot::Acrobot::from_pendulum(pendulum, acrobot.rng().clone()))
-        }
-        let damps = params.friction != Params::DEFAULT.friction;
-        match self {
-            Self::Acrobot(acrobot) if damps => {
-                with(params, acrobot).map(|damped| *self = Self::Damped(damped))
-            }
-            Self::Damped(acrobot) if !damps => {
-                with(params, acrobot).map(|acrobot| *self = Self::Acrobot(acrobot))
-            }
-            _ => with_one!(self, acrobot => acrobot.set_params(params)),
-        }
-        .map_err(|error| invalid(error, None))
+        with_one!(self, acrobot => acrobot.set_params(params)).map_err(|error| invalid(error, None))
     }
 
     fn state(&self) -> State {
@@ -298,7 +276,7 @@ impl Acrobot {
         let torques = &self.inner.torques;
         let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
         let high = torques.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        torque_of(AnyTask::of(self.inner.acrobot.task()), action, low, high)
+        torque_of(self.inner.acrobot.task(), action, low, high)
     }
 }
 

@@ -44,27 +44,6 @@ def test_draws_are_those_of_numpy(children):
     assert (drawn(envs) == drawn(twin)).all() and (drawn(envs) != first).all()
 
 
-@pytest.mark.parametrize(("kind", "name"), [("Swingup", "SWINGUP"), ("Balance", "BALANCE")])
-def test_digests_of_other_tasks_are_those_of_the_crate_bits(kind, name):
-    source = (DATA.parent / "bits/src/episodes.rs").read_text()
-    expected = re.search(rf"{name}: .*\[(0x\w+), (0x\w+)\];", source).groups()
-    digests = []
-    for is_float64 in (True, False):
-        envs = getattr(acrobot_rs, f"Acrobot{kind}VectorEnv")(1, float64=is_float64)
-        digest, largest = 0xCBF29CE484222325, envs.single_action_space.high
-        envs.reset()
-        for state in ([3.0, 0.2, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0]):
-            envs.state = [np.array(state) if is_float64 else np.float32(state)]
-            for _ in range(100):
-                torque = -largest if envs.state[0, 2] > 0 else largest
-                observations, rewards, *_ = envs.step([torque])
-                seen = np.append(observations, rewards).astype(np.float32)
-                for word in (*envs.state[0].astype(float).view(np.uint64), *seen.view(np.uint32)):
-                    digest = (digest ^ int(word)) * 0x100000001B3 % 2**64
-        digests.append(digest)
-    assert digests == [int(each, 16) for each in expected]
-
-
 ROWS = [json.loads(line) for line in (DATA / "rejections.jsonl").read_text().splitlines()]
 #: The crate's names of the numbers without indices, and Python's.
 CRATES = [name.split("[")[0] for row in ROWS if row["call"] == "params" for name in row["set"]]

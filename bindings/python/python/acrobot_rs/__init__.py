@@ -17,9 +17,8 @@ from importlib.metadata import version
 from gymnasium.envs.registration import register
 
 from acrobot_rs import policy
-from acrobot_rs._native import BALANCE_MAX_STEPS, MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS
-from acrobot_rs.balance import AcrobotBalanceEnv, AcrobotBalanceVectorEnv
-from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv
+from acrobot_rs._native import MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS
+from acrobot_rs.env import AcrobotBalanceEnv, AcrobotContinuousEnv, AcrobotEnv
 from acrobot_rs.parameters import LogUniform, Normal, Uniform
 from acrobot_rs.swingup import (
     AcrobotSwingupEnv,
@@ -27,7 +26,7 @@ from acrobot_rs.swingup import (
     AcrobotSwingupSparseVectorEnv,
     AcrobotSwingupVectorEnv,
 )
-from acrobot_rs.vector import AcrobotContinuousVectorEnv, AcrobotVectorEnv
+from acrobot_rs.vector import AcrobotBalanceVectorEnv, AcrobotContinuousVectorEnv, AcrobotVectorEnv
 
 __all__ = [
     "AcrobotBalanceEnv",
@@ -50,7 +49,7 @@ __version__ = version("acrobot-rs")
 for _kind, _id, _steps, _threshold in (
     ("Acrobot", "Acrobot-v1", MAX_STEPS, REWARD_THRESHOLD),
     ("AcrobotContinuous", "AcrobotContinuous-v0", MAX_STEPS, REWARD_THRESHOLD),
-    ("AcrobotBalance", "AcrobotBalance-v0", BALANCE_MAX_STEPS, None),
+    ("AcrobotBalance", "AcrobotBalance-v0", MAX_STEPS, None),
     ("AcrobotSwingup", "AcrobotSwingup-v0", SWINGUP_MAX_STEPS, None),
     ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", SWINGUP_MAX_STEPS, None),
 ):

@@ -64,11 +64,10 @@ class Environment(dm_env.Environment):
             task_name: ``"swingup"`` or ``"swingup_sparse"``.
             random: The seed of the initial states, or their generator.
             time_limit: The length of an episode, s; ``math.inf`` for no limit.
-            control_timestep: The duration of a step, s: a multiple of ``dt``.
-            n_sub_steps: Instead of it, how many times ``dt`` a step lasts; by default once.
+            control_timestep: The duration of a step, s: a multiple of ``dt``, by default ``dt``.
+            n_sub_steps: Instead, this multiple.
             flat_observation: Whether the observation is one array, ``"observations"``.
-            legacy_step: ``True``. Without it, MuJoCo's observations and rewards lag behind the
-                state.
+            legacy_step: ``True``: observations and rewards are of the new state.
             **parameters: Those of :class:`acrobot_rs.AcrobotSwingupEnv`.
         """
         if task_name not in _TASKS:
@@ -76,7 +75,7 @@ class Environment(dm_env.Environment):
         if not time_limit > 0:
             raise must_be("time_limit", "above 0 s", time_limit)
         if not legacy_step:
-            raise must_be("legacy_step", "True: observations are of the new state", legacy_step)
+            raise must_be("legacy_step", "True, for observations of the new state", legacy_step)
         if control_timestep is not None and n_sub_steps is not None:
             raise must_be("n_sub_steps", "None with control_timestep", n_sub_steps)
         is_generator = isinstance(random, np.random.RandomState)

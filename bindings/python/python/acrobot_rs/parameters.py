@@ -118,8 +118,10 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
         self._native = native
         self.render_mode = render_mode
         # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
-        values = {name: parameters.get(name, getattr(self, name)) for name in self._NAMES}
-        for name, value in values.items():
+        values = {name: getattr(self, name) for name in self._NAMES}
+        if "LINK_MOI" in parameters:
+            values |= {"LINK_MOI_1": None, "LINK_MOI_2": None}
+        for name, value in (values | {**parameters}).items():
             if value is not None or name in parameters:
                 setattr(self, name, value)
         for name, space in self._spaces().items():

@@ -23,6 +23,7 @@ class Swingup(Parameters[Each, EachTorques, EachEquations]):
     -1. The spaces do not change.
     """
 
+    LINK_MOI = None  # type: ignore[assignment]
     LINK_MOI_1: Each = 0.09557031250000002
     LINK_MOI_2: Each = 0.09530365719649563
     FRICTION_1: Each = 0.05
@@ -33,13 +34,9 @@ class Swingup(Parameters[Each, EachTorques, EachEquations]):
     MAX_VEL_2: Each = 1e30
     AVAIL_TORQUE: EachTorques = (-2.0, 0.0, 2.0)
 
-    _NAMES = tuple(name for name in Parameters._NAMES if name != "LINK_MOI")
     _TASK = "swingup"
     _BOUND = SWINGUP_BOUND
     _ACTION = "a number from -1 to 1"
-
-    #: Each link has its own. Access raises an ``AttributeError``.
-    LINK_MOI = property()  # type: ignore[assignment]
 
     def _limits(self) -> tuple[float, float, float, float]:
         return -1.0, 1.0, math.inf, math.inf

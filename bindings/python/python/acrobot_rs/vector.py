@@ -15,7 +15,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
-from acrobot_rs._native import MAX_STEPS, Batch
+from acrobot_rs._native import BALANCE_BOUND, MAX_STEPS, Batch
 from acrobot_rs.arrays import Seed, must_be, numbers, read_only
 from acrobot_rs.parameters import Drawn, Equations, Parameters, Torques
 
@@ -103,6 +103,8 @@ class AcrobotVectorEnv(
             if not (isinstance(count, Integral) and 0 < count < 2**32):
                 raise must_be(name, f"an integer from 1 to {2**32 - 1}", repr(count))
         if gymnasium_episodes:
+            if self._TASK != "acrobot":
+                raise must_be("gymnasium_episodes", "False in another task", True)
             if float64:
                 rule = "False with gymnasium_episodes, which computes in float64"
                 raise must_be("float64", rule, True)
@@ -325,3 +327,15 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv, VectorEnv[Floats, NDArray[Any
     """
 
     _CONTINUOUS = True
+
+
+class AcrobotBalanceVectorEnv(
+    AcrobotContinuousVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]
+):
+    """Many :class:`acrobot_rs.AcrobotBalanceEnv`, without ``gymnasium_episodes``."""
+
+    dt = 0.02
+    AVAIL_TORQUE = (-10.0, 0.0, 10.0)
+
+    _TASK = "balance"
+    _BOUND = BALANCE_BOUND
