@@ -57,7 +57,7 @@ impl<Text: fmt::Debug> fmt::Display for Fields<Text> {
 impl<A: Arithmetic, T: Task, const BATCH: bool> Header<A, T, BATCH> {
     pub(crate) const NEW: Self = Self(PhantomData);
 
-    /// The size in postcard's format, bytes: three texts, their lengths and the version, a byte each.
+    /// The size in postcard's format, bytes: three texts, a byte for each length, and the version.
     pub(crate) const SIZE: usize = 4 + Self::FIELDS.of.len() + T::NAME.len() + A::NAME.len();
 
     const FIELDS: Fields<&'static str> = {

@@ -11,10 +11,8 @@ use super::{Seen, Task};
 use crate::arithmetic::{Arithmetic, Numbers, Real};
 use crate::physics::{Params, State};
 
-/// Stay upright for 10 s: Gymnasium's acrobot, stepped every 0.02 s, with a motor of 10 N m.
-///
-/// An episode begins within the bounds of upright. No state ends it. `control::regulator` holds
-/// every initial state.
+/// Stay upright: Gymnasium's acrobot with steps of 0.02 s and a motor of 10 N m. An episode begins
+/// within the bounds of upright, and no state ends it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Balance;
@@ -29,7 +27,6 @@ impl Task for Balance {
     /// That of [`Gymnasium`].
     type Observation = [f32; 6];
 
-    /// θ1 is π plus a draw, the other numbers are draws.
     #[inline]
     fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
         let drawn = bounds.draw(rng);

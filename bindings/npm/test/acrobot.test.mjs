@@ -61,9 +61,6 @@ test("parameters act as natively", () => {
   const params = { ...numbers, torques: [-3, 0.25, 4], dynamics: "nips", ...friction };
   acrobot.setParams(params);
   assert.deepEqual(acrobot.params, params);
-  acrobot.setParams({ maxVelocity1: Infinity });
-  assert.ok(acrobot.params.maxVelocity1 > 1e38);
-  acrobot.setParams({ maxVelocity1: params.maxVelocity1 });
   for (const gravity of [0, -0]) {
     acrobot.setParams({ gravity });
     assert.deepEqual(acrobot.params, { ...params, gravity });

@@ -60,15 +60,13 @@ impl Batch {
     /// Sets a parameter of all acrobots to one value, or to a value for each.
     fn set(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
         let set = |engine: &mut _| with_batch!(engine, many => many.set(name, &values));
-        let engine = &mut alone(slf)?.engine;
-        if name.starts_with("FRICTION") { engine.change_friction(set) } else { set(engine) }
+        alone(slf)?.engine.change(name, set)
     }
 
     /// Sets a parameter that each reset draws.
     fn set_drawn(slf: &Bound<'_, Self>, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
         let set = |engine: &mut _| with_batch!(engine, many => many.set_drawn(name, drawn));
-        let engine = &mut alone(slf)?.engine;
-        if name.starts_with("FRICTION") { engine.change_friction(set) } else { set(engine) }
+        alone(slf)?.engine.change(name, set)
     }
 
     /// Writes the numbers of a parameter: a row for each acrobot, of three of `AVAIL_TORQUE`.

@@ -67,10 +67,18 @@ impl Engine {
         })
     }
 
-    /// Changes friction. Gymnasium's task has an arithmetic with friction only where there is some,
-    /// because another one saves time.
-    pub fn change_friction(&mut self, change: impl Fn(&mut Self) -> PyResult<()>) -> PyResult<()> {
-        if let Err(error) = change(self) {
+    /// Changes a parameter. Gymnasium's task has an arithmetic with friction only where there is
+    /// friction, because the other one saves time.
+    pub fn change(
+        &mut self,
+        name: &str,
+        change: impl Fn(&mut Self) -> PyResult<()>,
+    ) -> PyResult<()> {
+        let changed = change(self);
+        if !name.starts_with("FRICTION") {
+            return changed;
+        }
+        if let Err(error) = changed {
             let mut damped = match self {
                 Self::Fast(many) => Self::DampedFast(converted(many)?),
                 Self::Reference(many) => Self::DampedReference(converted(many)?),

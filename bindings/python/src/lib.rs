@@ -77,8 +77,8 @@ fn torque_of(task: &str, action: f64, low: f64, high: f64) -> f64 {
     torque.max(low).min(high)
 }
 
-/// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both moments
-/// of inertia.
+/// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both
+/// moments of inertia.
 const NAMES: [&str; 18] = [
     "LINK_LENGTH_1",
     "LINK_LENGTH_2",

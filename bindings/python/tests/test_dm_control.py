@@ -68,9 +68,8 @@ def test_a_step_can_last_longer(options):
         (ValueError, "task_name must be one of .*, got 'balance'", ["acrobot", "balance"]),
         (ValueError, "time_limit must be above 0 s", ["acrobot", "swingup", {"time_limit": 0}]),
         (ValueError, "legacy_step must be True", [*SWINGUP, {"legacy_step": False}]),
-        (ValueError, "n_sub_steps must be an int.*, got 0", [*SWINGUP, {"n_sub_steps": 0}]),
         (ValueError, "n_sub_steps must be None", [*SWINGUP, {"n_sub_steps": 1, **TIMESTEP}]),
-        (ValueError, "control_timestep / dt must be an int.*, got 1.5", [*SWINGUP, TIMESTEP]),
+        (ValueError, "control_timestep / dt must be .*, got 1.5", [*SWINGUP, TIMESTEP]),
     ],
 )
 def test_invalid_arguments_are_rejected(error, message, arguments):

@@ -73,10 +73,9 @@ def test_resets_draw_a_parameter_and_keep_others(name, gymnasium_episodes):
 
 
 @pytest.mark.parametrize("float64", [False, True])
-@pytest.mark.parametrize("dt", [[*np.linspace(0.1, 0.2, 20)], Uniform(0.1, 0.2)])
-def test_friction_changes_the_arithmetic_within_episodes(dt, float64):
+def test_friction_changes_the_arithmetic_within_episodes(float64):
     """A snapshot has the arithmetic."""
-    envs = make_vec(20, max_episode_steps=3, dt=dt, float64=float64)
+    envs = make_vec(20, max_episode_steps=3, dt=Uniform(0.1, 0.2), float64=float64)
     envs.reset(seed=1)
     for _ in range(4):  # the last one resets
         before = envs._native.__getstate__()
@@ -91,13 +90,10 @@ def test_friction_changes_the_arithmetic_within_episodes(dt, float64):
 
 
 def test_links_can_have_their_own_inertias():
-    """Until that of both is set."""
     envs = make_vec(3, LINK_MOI=LogUniform(1.0, 2.0), LINK_MOI_1=0.5)
-    for inertia in 0.5, 0.25:
-        envs.LINK_MOI_1 = inertia
-        envs.reset(seed=1)
-        assert (envs.get_parameter("LINK_MOI_1") == inertia).all()
-        assert (envs.get_parameter("LINK_MOI_2") > 1.0).all()
+    envs.reset(seed=1)
+    assert (envs.get_parameter("LINK_MOI_1") == 0.5).all()
+    assert (envs.get_parameter("LINK_MOI_2") > 1.0).all()
     with rejects(envs, TypeError, "LINK_MOI_1 must be a number, got None"):
         envs.LINK_MOI_1 = None
     envs.LINK_MOI = 3.0

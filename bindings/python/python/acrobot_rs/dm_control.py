@@ -53,7 +53,7 @@ class Environment(dm_env.Environment):
         random: int | np.random.RandomState | None = None,
         time_limit: float = 10.0,
         control_timestep: float | None = None,
-        n_sub_steps: int | None = None,
+        n_sub_steps: float | None = None,
         flat_observation: bool = False,
         legacy_step: bool = True,
         **parameters: Any,
@@ -82,12 +82,12 @@ class Environment(dm_env.Environment):
         self._random = random if is_generator else np.random.RandomState(random)
         #: The same environment for Gymnasium, which has the parameters and ``state``.
         self.gymnasium = _TASKS[task_name](**parameters)
-        name, count = "n_sub_steps", 1.0 if n_sub_steps is None else n_sub_steps
-        if control_timestep is not None:
-            name, count = "control_timestep / dt", control_timestep / self.gymnasium.dt
-        self._sub_steps = round(count)
-        if self._sub_steps < 1 or abs(count - self._sub_steps) > 1e-8:
-            raise must_be(name, "an integer of at least 1", count)
+        if n_sub_steps is None:
+            n_sub_steps = 1 if control_timestep is None else control_timestep / self.gymnasium.dt
+        self._sub_steps = round(n_sub_steps)
+        if self._sub_steps < 1 or abs(n_sub_steps - self._sub_steps) > 1e-8:
+            name = "n_sub_steps or control_timestep / dt"
+            raise must_be(name, "an integer of at least 1", n_sub_steps)
         self._time_limit = time_limit
         self._flat = flat_observation
         self._steps = 0

@@ -104,7 +104,7 @@ class AcrobotSwingupVectorEnv(
         self, num_envs: int = 1, max_episode_steps: int | None = SWINGUP_MAX_STEPS, **others: Any
     ) -> None:
         """Make environments. Other arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
-        super().__init__(num_envs, max_episode_steps, gymnasium_episodes=False, **others)
+        super().__init__(num_envs, max_episode_steps, **others)
 
 
 class AcrobotSwingupSparseVectorEnv(
