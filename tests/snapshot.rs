@@ -31,6 +31,7 @@ fn busy() -> Limited {
 #[test]
 fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
     let text = serde_json::to_string(&busy()).unwrap();
+    assert!(serde_json::from_str::<TimeLimit<Acrobot<Damped<Portable>>>>(&text).is_ok());
     let error = |from: &str, to: &str| {
         assert!(text.contains(from), "{from} in {text}");
         let changed = serde_json::from_str::<Limited>(&text.replacen(from, to, 1));
