@@ -22,9 +22,10 @@ pub const REWARD_THRESHOLD: f32 = -100.0;
 pub struct Step<O = [f32; 6]> {
     /// The observation of the new state.
     pub observation: O,
-    /// −1, or 0 if `terminated`; of a swing-up from 0 to 1.
+    /// −1, or 0 if `terminated`; of `Swingup` and `Balance` from 0 to 1.
     pub reward: f32,
-    /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1. Never in a swing-up.
+    /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1. Never in
+    /// `Swingup` and `Balance`.
     pub terminated: bool,
     /// Whether a [`TimeLimit`](crate::TimeLimit) ended the episode.
     pub truncated: bool,
@@ -62,8 +63,8 @@ impl<O> Step<O> {
 /// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any
 /// serde format can hold it, also in flattened structs and in tagged enums.
 ///
-/// The first field holds the type, the version (4), the [name of the task](Task::NAME), the [name
-/// of the arithmetic](Arithmetic::NAME) and whether it has friction. Loading rejects another one,
+/// The first field holds the type, the version (4), the [name of the task](Task::NAME) and the [name
+/// of the arithmetic](Arithmetic::NAME), with or without friction. Loading rejects another one,
 /// and what the setters reject; postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
 /// [`TimeLimit`](crate::TimeLimit), is the size of a buffer for postcard.
 ///

@@ -176,9 +176,9 @@ pub(crate) enum Range {
     Finite,
     AtLeastZero,
     AboveZero,
-    /// The positive normal numbers of `f32`: for velocity bounds, because observations are `f32`,
-    /// and NEON of 32-bit ARM treats subnormal numbers as 0.
-    NormalF32,
+    /// For velocity bounds, which may be infinite. NEON of 32-bit ARM treats subnormal numbers of
+    /// `f32` as 0.
+    AtLeastNormalF32,
     /// Finite in `f32`: for reset bounds, because initial states are `f32`.
     InF32,
 }
@@ -190,18 +190,15 @@ impl Range {
         value: f64,
         unit: &'static str,
     ) -> Result<(), Error> {
-        let in_f32 = value.abs() <= f32::MAX as f64;
+        let is_finite = value.is_finite();
         let (holds, rule) = match self {
-            Self::Finite => (true, "a finite number of"),
-            Self::AtLeastZero => (value >= 0.0, "finite and at least 0"),
-            Self::AboveZero => (value > 0.0, "finite and above 0"),
-            Self::NormalF32 => {
-                let is_normal = value >= f32::MIN_POSITIVE as f64;
-                (is_normal && in_f32, "from 1.2e-38 to 3.4e38")
-            }
-            Self::InF32 => (in_f32, "from -3.4e38 to 3.4e38"),
+            Self::Finite => (is_finite, "a finite number of"),
+            Self::AtLeastZero => (is_finite && value >= 0.0, "finite and at least 0"),
+            Self::AboveZero => (is_finite && value > 0.0, "finite and above 0"),
+            Self::AtLeastNormalF32 => (value >= f32::MIN_POSITIVE as f64, "at least 1.2e-38"),
+            Self::InF32 => (value.abs() <= f32::MAX as f64, "from -3.4e38 to 3.4e38"),
         };
-        match holds && value.is_finite() {
+        match holds {
             true => Ok(()),
             false => Err(Error::OutOfRange { name, value, unit, rule }),
         }

@@ -45,22 +45,20 @@ struct Fields<Text> {
     version: u32,
     task: Text,
     arithmetic: Text,
-    friction: bool,
 }
 
 impl<Text: fmt::Debug> fmt::Display for Fields<Text> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { of, version, task, arithmetic, friction } = self;
-        write!(f, "{of:?}, version {version}, task {task:?}, arithmetic {arithmetic:?}, ")?;
-        write!(f, "friction {friction}")
+        let Self { of, version, task, arithmetic } = self;
+        write!(f, "{of:?}, version {version}, task {task:?}, arithmetic {arithmetic:?}")
     }
 }
 
 impl<A: Arithmetic, T: Task, const BATCH: bool> Header<A, T, BATCH> {
     pub(crate) const NEW: Self = Self(PhantomData);
 
-    /// The size in postcard's format, bytes: two texts, their lengths and the version, a byte each.
-    pub(crate) const SIZE: usize = 5 + Self::FIELDS.of.len() + T::NAME.len() + A::NAME.len();
+    /// The size in postcard's format, bytes: three texts, a byte for each length, and the version.
+    pub(crate) const SIZE: usize = 4 + Self::FIELDS.of.len() + T::NAME.len() + A::NAME.len();
 
     const FIELDS: Fields<&'static str> = {
         assert!(A::NAME.len() <= LIMIT, "an arithmetic's NAME must have at most 16 bytes");
@@ -71,7 +69,6 @@ impl<A: Arithmetic, T: Task, const BATCH: bool> Header<A, T, BATCH> {
             version: VERSION,
             task: T::NAME,
             arithmetic: A::NAME,
-            friction: A::HAS_FRICTION,
         }
     };
 }
@@ -92,8 +89,7 @@ impl<'de, A: Arithmetic, T: Task, const BATCH: bool> Deserialize<'de> for Header
         })?;
         let rule = Self::FIELDS;
         let same_names = found.task == T::NAME && found.arithmetic == A::NAME;
-        let same = found.of == rule.of && found.friction == A::HAS_FRICTION && same_names;
-        if same && found.version == VERSION {
+        if found.of == rule.of && same_names && found.version == VERSION {
             return Ok(Self::NEW);
         }
         let text = format_args!("the snapshot must be {rule}, got {found}");

@@ -3,6 +3,7 @@
 //! A [`Task`] is a type parameter of [`Acrobot`](crate::Acrobot) and of
 //! [`Batch`](crate::batch::Batch).
 
+mod balance;
 mod draws;
 pub(crate) mod episode;
 mod gymnasium;
@@ -18,6 +19,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use rand_core::Rng;
 
+pub use balance::Balance;
 pub use draws::{Draw, Draws};
 pub use gymnasium::{Gymnasium, GymnasiumV0};
 pub use observation::Observation;

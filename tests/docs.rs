@@ -73,37 +73,31 @@ fn parameters_are_described_with_their_units_and_ranges() {
         };
         let camel_case = camel_case.replace("_noise", "Noise");
         check("bindings/npm/package/index.d.ts", &format!("{camel_case}: "), unit, range);
-        for (file, python) in [("parameters", IN_PYTHON[place].0), ("swingup", IN_PYTHON[place].1)]
-        {
-            let file = format!("bindings/python/python/acrobot_rs/{file}.py");
-            if !python.is_empty() {
-                check(&file, &format!("{python}: "), unit, range);
-            }
-        }
+        let python = format!("{}: ", IN_PYTHON[place]);
+        check("bindings/python/python/acrobot_rs/parameters.py", &python, unit, range);
     }
 }
 
-/// Python's name of each parameter in Gymnasium's environment, and in the swing-up where it is
-/// another.
-const IN_PYTHON: [(&str, &str); 18] = [
-    ("LINK_LENGTH_1", ""),
-    ("LINK_LENGTH_2", ""),
-    ("LINK_MASS_1", ""),
-    ("LINK_MASS_2", ""),
-    ("LINK_COM_POS_1", ""),
-    ("LINK_COM_POS_2", ""),
-    ("LINK_MOI", "LINK_MOI_1"),
-    ("LINK_MOI", "LINK_MOI_2"),
-    ("gravity", ""),
-    ("dt", ""),
-    ("MAX_VEL_1", ""),
-    ("MAX_VEL_2", ""),
-    ("AVAIL_TORQUE", ""),
-    ("AVAIL_TORQUE", ""),
-    ("AVAIL_TORQUE", ""),
-    ("torque_noise_max", ""),
-    ("", "FRICTION_1"),
-    ("", "FRICTION_2"),
+/// Python's name of each parameter.
+const IN_PYTHON: [&str; 18] = [
+    "LINK_LENGTH_1",
+    "LINK_LENGTH_2",
+    "LINK_MASS_1",
+    "LINK_MASS_2",
+    "LINK_COM_POS_1",
+    "LINK_COM_POS_2",
+    "LINK_MOI_1",
+    "LINK_MOI_2",
+    "gravity",
+    "dt",
+    "MAX_VEL_1",
+    "MAX_VEL_2",
+    "AVAIL_TORQUE",
+    "AVAIL_TORQUE",
+    "AVAIL_TORQUE",
+    "torque_noise_max",
+    "FRICTION_1",
+    "FRICTION_2",
 ];
 
 /// The comment on a declaration's line and on those above it has the unit and the range, or says

@@ -4,7 +4,7 @@
 use acrobot::arithmetic::{Damped, Micro, Reference};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::{Fast, Portable};
-use bits::{Digest, balance, episodes, plan, training};
+use bits::{Digest, episodes, plan, training};
 
 /// Friction and the task are two things: the initial states, rewards and the goal stay Gymnasium's,
 /// too.
@@ -48,15 +48,11 @@ fn the_shared_episodes_are_stable() {
 }
 
 #[test]
-fn subnormal_numbers_friction_and_the_swing_up_are_stable() {
-    let found = (episodes::subnormal(), episodes::damped(), episodes::swingup());
-    let expected = (episodes::SUBNORMAL, episodes::DAMPED, episodes::SWINGUP);
+fn subnormal_numbers_friction_and_other_tasks_are_stable() {
+    let found =
+        (episodes::subnormal(), episodes::damped(), episodes::swingup(), episodes::balance());
+    let expected = (episodes::SUBNORMAL, episodes::DAMPED, episodes::SWINGUP, episodes::BALANCE);
     assert!(found == expected, "{found:#018x?}");
-}
-
-#[test]
-fn a_users_task_is_stable() {
-    assert!(balance::digest() == balance::DIGEST, "{:#018x}", balance::digest());
 }
 
 /// The program `bits` tries other widths.

@@ -26,7 +26,7 @@ fn errors_name_the_value_and_the_rule() {
         (
             // Subnormal in `f32`: NEON of 32-bit ARM would take it for 0.
             Params { max_velocity1: 1.1754942e-38, ..Params::DEFAULT }.validate(),
-            "max_velocity1 must be from 1.2e-38 to 3.4e38 rad/s, \
+            "max_velocity1 must be at least 1.2e-38 rad/s, \
                 got 0.000000000000000000000000000000000000011754942",
         ),
         (
@@ -137,6 +137,19 @@ fn results_that_are_not_finite_keep_the_angles_and_stop() {
         acrobot.set_params(Params::default()).unwrap();
         acrobot.step(Action::Positive);
         assert_ne!(acrobot.state().dtheta1, A::Scalar::ZERO);
+    }
+    in_every_arithmetic!(check);
+}
+
+/// They are stored as a number, so that JSON can hold it, and no velocity in `f64` is beyond `f32`.
+#[test]
+fn infinite_bounds_of_velocity_are_none() {
+    fn check<A: Arithmetic>() {
+        let [infinite, largest] = [f64::INFINITY, f32::MAX.into()].map(A::Scalar::from_f64);
+        let (max_velocity1, max_velocity2) = (infinite, infinite);
+        let params = Params { max_velocity1, max_velocity2, ..Params::default() };
+        let stored = Params { max_velocity1: largest, max_velocity2: largest, ..params };
+        assert_eq!(*Acrobot::<A>::with_params(0, params).unwrap().params(), stored);
     }
     in_every_arithmetic!(check);
 }

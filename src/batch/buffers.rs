@@ -6,7 +6,8 @@ use crate::error::Error;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct StepBuffers<'a, O = [f32; 6]> {
-    /// −1, or 0 if the acrobot terminated or was only reset; of a swing-up from 0 to 1.
+    /// −1, or 0 if the acrobot terminated or was only reset; of `Swingup` and `Balance`
+    /// from 0 to 1.
     pub rewards: &'a mut [f32],
     /// Whether the new state is a goal state.
     pub terminated: &'a mut [bool],

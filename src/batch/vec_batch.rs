@@ -52,7 +52,8 @@ pub struct VecBatch<A: Arithmetic, T: Task = Gymnasium, const N: usize = 16> {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StepResults<O = [f32; 6]> {
-    /// −1, or 0 if the acrobot terminated or was only reset; of a swing-up from 0 to 1.
+    /// −1, or 0 if the acrobot terminated or was only reset; of `Swingup` and `Balance`
+    /// from 0 to 1.
     pub rewards: Vec<f32>,
     /// Whether the new state is a goal state.
     pub terminated: Vec<bool>,

@@ -131,9 +131,11 @@ for_f32_and_f64! {
         #[inline(always)]
         pub(crate) const fn new(
             form: Form,
-            params: Params<S>,
+            mut params: Params<S>,
             [l1_squared, lc1_squared, lc2_squared]: [S; 3],
         ) -> Self {
+            params.max_velocity1 = Self::in_f32(params.max_velocity1);
+            params.max_velocity2 = Self::in_f32(params.max_velocity2);
             let Params { inertia1, inertia2, gravity, dt, .. } = params;
             let (l1, m1, m2) = (params.length1, params.mass1, params.mass2);
             let (lc1, lc2) = (params.center_of_mass1, params.center_of_mass2);
@@ -168,6 +170,11 @@ for_f32_and_f64! {
                 own,
             };
             Self { params, constants }
+        }
+
+        const fn in_f32(bound: S) -> S {
+            const LARGEST: S = f32::MAX as S;
+            if bound > LARGEST { LARGEST } else { bound }
         }
     }
 

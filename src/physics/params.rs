@@ -59,7 +59,8 @@ pub struct Params<S = f64> {
     pub gravity: S,
     /// Duration of one step, s; above 0.
     pub dt: S,
-    /// Bound of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38, because observations are `f32`.
+    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity is none, stored as 3.4e38, the
+    /// largest `f32`, because observations are `f32`.
     pub max_velocity1: S,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,
@@ -110,7 +111,7 @@ impl<S: Real> Params<S> {
 
 /// The name, unit and range of each number.
 pub(crate) const FIELDS: [(&str, &str, Range); 18] = {
-    use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
+    use Range::{AboveZero, AtLeastNormalF32, AtLeastZero, Finite};
     [
         ("length1", "m", AboveZero),
         ("length2", "m", AboveZero),
@@ -122,8 +123,8 @@ pub(crate) const FIELDS: [(&str, &str, Range); 18] = {
         ("inertia2", "kg m²", AtLeastZero),
         ("gravity", "m/s²", Finite),
         ("dt", "s", AboveZero),
-        ("max_velocity1", "rad/s", NormalF32),
-        ("max_velocity2", "rad/s", NormalF32),
+        ("max_velocity1", "rad/s", AtLeastNormalF32),
+        ("max_velocity2", "rad/s", AtLeastNormalF32),
         ("torques[0]", "N m", Finite),
         ("torques[1]", "N m", Finite),
         ("torques[2]", "N m", Finite),

@@ -18,6 +18,9 @@ impl ResetBounds {
     /// Gymnasium's bounds: from −0.1 to 0.1.
     pub const DEFAULT: Self = Self { low: -0.1, high: 0.1 };
 
+    /// From −0.05 to 0.05.
+    pub(crate) const NEAR: Self = Self { low: -0.05, high: 0.05 };
+
     /// Any angle: from −π to π.
     pub(crate) const ANYWHERE: Self =
         Self { low: -core::f64::consts::PI, high: core::f64::consts::PI };

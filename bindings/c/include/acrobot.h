@@ -191,7 +191,7 @@ typedef struct {
   float gravity;
   // Duration of one step, s; above 0. Default 0.2.
   float dt;
-  // Bound of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default 4 π.
+  // Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, INFINITY for none. Default 4 π.
   float max_velocity1;
   // As `max_velocity1`, of |θ̇2|. Default 9 π.
   float max_velocity2;

@@ -118,7 +118,7 @@ pub struct acrobot_params_t {
     pub gravity: f32,
     /// Duration of one step, s; above 0. Default 0.2.
     pub dt: f32,
-    /// Bound of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default 4 π.
+    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, INFINITY for none. Default 4 π.
     pub max_velocity1: f32,
     /// As `max_velocity1`, of |θ̇2|. Default 9 π.
     pub max_velocity2: f32,

@@ -33,7 +33,8 @@ export interface State {
 
 /**
  * The parameters, rounded to single precision. The lengths, masses, torque noise and `dynamics` of
- * a swing-up have the defaults below, the others those of dm_control.
+ * a swing-up have the defaults below, the others those of dm_control. The task `"balance"` has
+ * other defaults for `dt`, 0.02, and `torques`, [-10, 0, 10].
  */
 export interface Params {
   /** Length of link 1, m; above 0. Default: 1. */
@@ -56,9 +57,9 @@ export interface Params {
   gravity: number;
   /** Duration of a step, s; above 0. Default: 0.2. */
   dt: number;
-  /** Bound of |dtheta1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default: 4π. */
+  /** Bound of |dtheta1| after a step, rad/s; at least 1.2e-38, Infinity for none. Default: 4π. */
   maxVelocity1: number;
-  /** Bound of |dtheta2| after a step, rad/s; from 1.2e-38 to 3.4e38. Default: 9π. */
+  /** Bound of |dtheta2| after a step, rad/s; at least 1.2e-38, Infinity for none. Default: 9π. */
   maxVelocity2: number;
   /** Torques of the three actions, counter-clockwise, N m; finite. Default: [-1, 0, 1]. */
   torques: readonly [number, number, number];
@@ -66,9 +67,9 @@ export interface Params {
   torqueNoise: number;
   /** Equations of the book or of the NIPS paper: Gymnasium's `book_or_nips`. Default: "book". */
   dynamics: "book" | "nips";
-  /** Friction of the fixed joint in a swing-up, N m s/rad; 0 or more. Default: 0. */
+  /** Friction of the fixed joint, N m s/rad; 0 or more, and 0 in "acrobot". Default: 0. */
   friction1: number;
-  /** Friction of the joint between the links in a swing-up, N m s/rad; 0 or more. Default: 0. */
+  /** Friction between the links, N m s/rad; 0 or more, and 0 in "acrobot". Default: 0. */
   friction2: number;
 }
 
@@ -92,11 +93,14 @@ export type Draws = {
 } & { readonly torques?: readonly [Draw, Draw, Draw] };
 
 /**
- * Gymnasium's task, or dm_control's `acrobot-swingup`: from rest anywhere to upright, and no state
- * ends it. This has other parameters, 1000 steps, a reward from 0 to 1, and other observations: the
- * sines of both links' angles from upright, their cosines, and the velocities.
+ * Gymnasium's task, or one that no state ends, with a reward from 0 to 1 and other parameters.
+ *
+ * "swingup" is dm_control's `acrobot-swingup`: from rest anywhere to upright, with 1000 steps and
+ * other observations, the sines of both links' angles from upright, their cosines, and the
+ * velocities. "balance" is to stay upright: 500 steps, with the reward
+ * (2 − cos θ1 − cos(θ1 + θ2)) / 4 and a motor of 10 N m.
  */
-export type Task = "acrobot" | "swingup";
+export type Task = "acrobot" | "swingup" | "balance";
 
 export interface Options {
   /** The seed of the first initial state and all later random numbers. Default: random. */
@@ -117,9 +121,9 @@ export interface Step {
    * first four are dm_control's `orientations`.
    */
   observation: Float32Array;
-  /** −1, or 0 if `terminated`. In a swing-up from 0 to 1. */
+  /** −1, or 0 if `terminated`. In other tasks from 0 to 1. */
   reward: number;
-  /** Whether the goal is reached: −cos θ1 − cos(θ1 + θ2) > 1. Never in a swing-up. */
+  /** Whether the goal is reached: −cos θ1 − cos(θ1 + θ2) > 1. Never in other tasks. */
   terminated: boolean;
   /** Whether the episode has reached `maxSteps`. */
   truncated: boolean;
@@ -226,7 +230,7 @@ export interface BatchOptions extends Options {
  */
 export interface BatchStep {
   observations: Float32Array;
-  /** −1, or 0 if the acrobot terminated or was only reset. In a swing-up from 0 to 1. */
+  /** −1, or 0 if the acrobot terminated or was only reset. In other tasks from 0 to 1. */
   rewards: Float32Array;
   /** 1 at the goal, otherwise 0. */
   terminated: Uint8Array;

@@ -8,7 +8,7 @@ const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
 const DYNAMICS = ["book", "nips"];
 /** The kinds of draws in the order of the module, with the count of their numbers. */
 const DRAWS = { fixed: 0, asBefore: 0, uniform: 2, logUniform: 2, normal: 4 };
-export const TASKS = ["acrobot", "swingup"];
+export const TASKS = ["acrobot", "swingup", "balance"];
 export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 
 export const isAction = (action) => action === 0 || action === 1 || action === 2;
@@ -94,7 +94,7 @@ function accept(kind, given) {
   if (kind === 3) throw invalid(shared, false, ["boolean"]);
   const [value] = numbers();
   const name = camelCase(text(1));
-  const friction = '0 unless the task is "swingup", in N m s/rad';
+  const friction = '0 in the task "acrobot", in N m s/rad';
   const rule = kind === 2 ? friction : `${text(3)} ${text(5)}`;
   // What the caller gave, before it was rounded.
   const own = [given[name]].flat().find((number) => Object.is(Math.fround(number), value));

@@ -23,17 +23,19 @@ static ALLOCATOR: AssumeSingleThreaded<FreeListAllocator> =
     unsafe { AssumeSingleThreaded::new(FreeListAllocator::new()) };
 
 /// What has another type for each task.
-pub enum Tasks<A, B> {
+pub enum Tasks<A, B, C> {
     Acrobot(A),
     Swingup(B),
+    Balance(C),
 }
 
-impl<A, B> Tasks<A, B> {
+impl<A, B, C> Tasks<A, B, C> {
     /// JavaScript's number of the task.
     pub fn number(&self) -> u32 {
         match self {
             Self::Acrobot(_) => 0,
             Self::Swingup(_) => 1,
+            Self::Balance(_) => 2,
         }
     }
 }
@@ -44,6 +46,7 @@ macro_rules! with_task {
         match $tasks {
             $crate::Tasks::Acrobot($of) => $result,
             $crate::Tasks::Swingup($of) => $result,
+            $crate::Tasks::Balance($of) => $result,
         }
     };
 }

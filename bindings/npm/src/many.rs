@@ -7,7 +7,7 @@ use acrobot::arithmetic::{Arithmetic, Damped};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::State;
-use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup};
+use acrobot::task::{Balance, Draw, Draws, Gymnasium, ResetBounds, Swingup};
 use acrobot::{Error, Fast, Params, ResetOptions};
 use serde::Serialize;
 
@@ -24,7 +24,11 @@ type Memory<A> =
 
 type Acrobots<A, T> = Batch<A, Memory<A>, T, LANES>;
 
-type AnyTask = Tasks<Acrobots<Fast, Gymnasium>, Acrobots<Damped<Fast>, Swingup>>;
+type AnyTask = Tasks<
+    Acrobots<Fast, Gymnasium>,
+    Acrobots<Damped<Fast>, Swingup>,
+    Acrobots<Damped<Fast>, Balance>,
+>;
 
 /// A batch with its memory, and what JavaScript reads and writes.
 pub struct Many {
@@ -59,7 +63,8 @@ impl Many {
         let seed = SeedSequence::new(0);
         let batch = match task {
             0 => Tasks::Acrobot(Batch::new(seed, memory(count, own_params)?).ok()?),
-            _ => Tasks::Swingup(Batch::new(seed, memory(count, own_params)?).ok()?),
+            1 => Tasks::Swingup(Batch::new(seed, memory(count, own_params)?).ok()?),
+            _ => Tasks::Balance(Batch::new(seed, memory(count, own_params)?).ok()?),
         };
         // SAFETY: all are numbers and flags.
         unsafe {

@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Damped};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::{Pendulum, State};
-use acrobot::task::{Draws, Gymnasium, Swingup, Task};
+use acrobot::task::{Balance, Draws, Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Step};
 use serde::Serialize;
 
@@ -13,7 +13,7 @@ use crate::memory::{self, set_numbers};
 use crate::snapshot::{self, Reader, Rejected, read};
 use crate::{Tasks, with_task};
 
-type AnyTask = Tasks<Acrobot<Fast>, Acrobot<Damped<Fast>, Swingup>>;
+type AnyTask = Tasks<Acrobot<Fast>, Acrobot<Damped<Fast>, Swingup>, Acrobot<Damped<Fast>, Balance>>;
 
 /// An acrobot under a limit of steps.
 pub struct One {
@@ -32,7 +32,8 @@ pub struct One {
 pub extern "C" fn acrobot_new(max_steps: u32, task: u32) -> Option<Box<One>> {
     let (acrobot, limit) = match task {
         0 => (Tasks::Acrobot(Acrobot::hanging(Pcg64::UNSEEDED)), Gymnasium::MAX_STEPS),
-        _ => (Tasks::Swingup(Acrobot::hanging(Pcg64::UNSEEDED)), Swingup::MAX_STEPS),
+        1 => (Tasks::Swingup(Acrobot::hanging(Pcg64::UNSEEDED)), Swingup::MAX_STEPS),
+        _ => (Tasks::Balance(Acrobot::hanging(Pcg64::UNSEEDED)), Balance::MAX_STEPS),
     };
     memory::keep(One {
         acrobot,
@@ -200,7 +201,8 @@ impl One {
         }
         self.acrobot = match task {
             0 => Tasks::Acrobot(load(params, state, rng)?),
-            _ => Tasks::Swingup(load(params, state, rng)?),
+            1 => Tasks::Swingup(load(params, state, rng)?),
+            _ => Tasks::Balance(load(params, state, rng)?),
         };
         (self.max_steps, self.elapsed_steps) = (max_steps, elapsed_steps);
         self.draws = Draws::NONE;

@@ -59,14 +59,14 @@ impl Batch {
 
     /// Sets a parameter of all acrobots to one value, or to a value for each.
     fn set(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
-        let this = &mut *alone(slf)?;
-        with_batch!(&mut this.engine, many => many.set(name, &values))
+        let set = |engine: &mut _| with_batch!(engine, many => many.set(name, &values));
+        alone(slf)?.engine.change(name, set)
     }
 
     /// Sets a parameter that each reset draws.
     fn set_drawn(slf: &Bound<'_, Self>, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
-        let this = &mut *alone(slf)?;
-        with_batch!(&mut this.engine, many => many.set_drawn(name, drawn))
+        let set = |engine: &mut _| with_batch!(engine, many => many.set_drawn(name, drawn));
+        alone(slf)?.engine.change(name, set)
     }
 
     /// Writes the numbers of a parameter: a row for each acrobot, of three of `AVAIL_TORQUE`.
@@ -177,8 +177,9 @@ impl Batch {
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
         let task = match engine {
-            Engine::Fast(_) | Engine::Swingup(_) => 16_384,
-            _ => 1024,
+            Engine::Reference(_) | Engine::DampedReference(_) | Engine::Host(_) => 1024,
+            Engine::ReferenceSwingup(_) | Engine::ReferenceBalance(_) => 1024,
+            _ => 16_384,
         };
         let tasks = len.div_ceil(task);
         match tasks.min(this.threads.get() as usize) {

@@ -1,9 +1,9 @@
-//! A batch of one of five pairs of arithmetic and task.
+//! A batch of one of nine pairs of arithmetic and task.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::task::{Draw, Draws, Gymnasium, Swingup, Task};
+use acrobot::task::{Balance, Draw, Draws, Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -13,7 +13,8 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, torque_of, with,
+    InvalidAction, Name, Params, check_states, invalid, load, must_be, places, rejected, to_bytes,
+    torque_of, with,
 };
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
@@ -42,11 +43,15 @@ impl<'py> Inputs<'py> {
 #[derive(Serialize, Deserialize)]
 pub enum Engine {
     Fast(Many<Fast>),
-    /// Computes as Gymnasium does.
+    DampedFast(Many<Damped<Fast>>),
+    /// Computes as Gymnasium does, without friction.
     Host(Many<Host>),
     Swingup(Many<Damped<Fast>, Swingup>),
+    Balance(Many<Damped<Fast>, Balance>),
     Reference(Many<Reference>),
+    DampedReference(Many<Damped<Reference>>),
     ReferenceSwingup(Many<Damped<Reference>, Swingup>),
+    ReferenceBalance(Many<Damped<Reference>, Balance>),
 }
 
 impl Engine {
@@ -54,11 +59,50 @@ impl Engine {
         Ok(match name {
             "gymnasium" => Self::Host(Many::new(len, seed)?),
             "swingup" => Self::Swingup(Many::new(len, seed)?),
+            "balance" => Self::Balance(Many::new(len, seed)?),
             "acrobot_float64" => Self::Reference(Many::new(len, seed)?),
             "swingup_float64" => Self::ReferenceSwingup(Many::new(len, seed)?),
+            "balance_float64" => Self::ReferenceBalance(Many::new(len, seed)?),
             _ => Self::Fast(Many::new(len, seed)?),
         })
     }
+
+    /// Changes a parameter. Gymnasium's task has an arithmetic with friction only where there is
+    /// friction, because the other one saves time.
+    pub fn change(
+        &mut self,
+        name: &str,
+        change: impl Fn(&mut Self) -> PyResult<()>,
+    ) -> PyResult<()> {
+        let changed = change(self);
+        if !name.starts_with("FRICTION") {
+            return changed;
+        }
+        if let Err(error) = changed {
+            let mut damped = match self {
+                Self::Fast(many) => Self::DampedFast(converted(many)?),
+                Self::Reference(many) => Self::DampedReference(converted(many)?),
+                _ => return Err(error),
+            };
+            change(&mut damped)?;
+            *self = damped;
+        }
+        let undamped = match self {
+            Self::DampedFast(many) => converted(many).map(Self::Fast),
+            Self::DampedReference(many) => converted(many).map(Self::Reference),
+            _ => return Ok(()),
+        };
+        // It fails where there is friction.
+        if let Ok(undamped) = undamped {
+            *self = undamped;
+        }
+        Ok(())
+    }
+}
+
+/// The same batch in the arithmetic with friction, or in that without: both have one snapshot.
+fn converted<A: Arithmetic, B: Arithmetic>(many: &Many<A>) -> PyResult<Many<B>> {
+    load(&to_bytes(many)?)
 }
 
 /// Does something with the batch in an engine, whatever its arithmetic and task.
@@ -66,10 +110,14 @@ macro_rules! with_batch {
     ($engine:expr, $many:ident => $result:expr) => {
         match $engine {
             $crate::engine::Engine::Fast($many) => $result,
+            $crate::engine::Engine::DampedFast($many) => $result,
             $crate::engine::Engine::Host($many) => $result,
             $crate::engine::Engine::Swingup($many) => $result,
+            $crate::engine::Engine::Balance($many) => $result,
             $crate::engine::Engine::Reference($many) => $result,
+            $crate::engine::Engine::DampedReference($many) => $result,
             $crate::engine::Engine::ReferenceSwingup($many) => $result,
+            $crate::engine::Engine::ReferenceBalance($many) => $result,
         }
     };
 }
@@ -111,9 +159,18 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
         Ok(())
     }
 
+    /// The draws, of which one is to change. That of `LINK_MOI` becomes one of each link.
+    fn draws_beside(&self, name: &str) -> Params<Draw<A::Scalar>> {
+        let mut draws = *self.batch.draws().params();
+        if name == "LINK_MOI_1" && draws.inertia2 == Draw::<A::Scalar>::AsBefore {
+            draws.inertia2 = draws.inertia1;
+        }
+        draws
+    }
+
     /// Sets a parameter of all acrobots to a value from Python, or to a value for each.
     pub fn set(&mut self, name: &str, values: &[Bound<'_, PyAny>]) -> PyResult<()> {
-        let mut draws = *self.batch.draws().params();
+        let mut draws = self.draws_beside(name);
         places(name).for_each(|place| *draws.numbers_mut()[place] = Draw::Fixed);
         let draws = Draws::new(draws).map_err(rejected)?;
         let is_own = values.len() > 1 || self.batch.has_own_params();
@@ -126,7 +183,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
             let name = Name(name, [index_in_name, None]);
             let given = with::<A::Scalar>(self.params(index), name, value)?.cast();
             let tried = alone.set_params(given).and_then(|()| alone.draw_params(&draws));
-            tried.map_err(|error| invalid(T::NAME, error, index_in_name))?;
+            tried.map_err(|error| invalid(error, index_in_name))?;
             each.push(given);
         }
         if each.iter().all(|params| *params == each[0]) {
@@ -151,7 +208,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
             with::<A::Scalar>(Params::DEFAULT, Name(name, [None; 2]), &drawn.getattr(number)?)
         });
         let given = given.collect::<PyResult<Vec<_>>>()?;
-        let mut draws = *self.batch.draws().params();
+        let mut draws = self.draws_beside(name);
         for place in places(name) {
             let number = |i: usize| A::Scalar::from_f64(given[i].numbers()[place].1);
             let (low, high) = (number(0), number(1));
@@ -164,7 +221,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
         if name == "LINK_MOI" {
             draws.inertia2 = Draw::AsBefore;
         }
-        let rejected = |error| invalid(T::NAME, error, None);
+        let rejected = |error| invalid(error, None);
         let draws = Draws::new(draws).map_err(rejected)?;
         match self.batch.set_draws(draws) {
             Err(Error::SharedParams) => {
@@ -205,10 +262,10 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
                         let (low, high) = if is_own { bounds(index) } else { first };
                         A::Scalar::from_f64(torque_of(T::NAME, torque.into(), low, high))
                     },
-                    if T::NAME == Gymnasium::NAME {
-                        "a number, N m"
-                    } else {
+                    if T::NAME == Swingup::NAME {
                         "a number from -1 to 1"
+                    } else {
+                        "a number, N m"
                     },
                 )
             }

@@ -10,7 +10,7 @@ use std::fmt::{self, Display, Formatter};
 use acrobot::arithmetic::{Damped, Host, Real};
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::Dynamics;
-use acrobot::task::{Gymnasium, ResetBounds, Swingup, Task};
+use acrobot::task::{Balance, Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::{Acrobot, Error, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
@@ -38,6 +38,8 @@ mod _native {
     #[pymodule_export]
     const SWINGUP_BOUND: f64 = Swingup::RESET_BOUNDS.high();
     #[pymodule_export]
+    const BALANCE_BOUND: f64 = Balance::RESET_BOUNDS.high();
+    #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
     use super::single::Acrobot;
@@ -62,21 +64,21 @@ fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<Py
 }
 
 /// The torque of a continuous action, N m, which is within the smallest and the largest torque.
-/// Gymnasium's task has torques as actions. In a swing-up the action 1 is the largest torque, −1
-/// the smallest and 0 none.
+/// In a swing-up the action 1 is the largest torque, −1 the smallest and 0 none. In other tasks
+/// actions are torques.
 fn torque_of(task: &str, action: f64, low: f64, high: f64) -> f64 {
     let torque = match task {
-        Gymnasium::NAME => action,
-        _ => match action.clamp(-1.0, 1.0) {
+        Swingup::NAME => match action.clamp(-1.0, 1.0) {
             action if action < 0.0 => action * -low,
             action => action * high,
         },
+        _ => action,
     };
     torque.max(low).min(high)
 }
 
-/// Python's names of the parameters, in the order of the crate's numbers. Gymnasium has one moment
-/// of inertia for both links, `LINK_MOI`.
+/// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both
+/// moments of inertia.
 const NAMES: [&str; 18] = [
     "LINK_LENGTH_1",
     "LINK_LENGTH_2",
@@ -119,16 +121,13 @@ fn rejected(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// The error of a rejected parameter of a task, of all environments or of one, with Python's name.
-fn invalid(task: &str, error: Error, index: Option<usize>) -> PyErr {
+/// The error of a rejected parameter, of all environments or of one, with Python's name.
+fn invalid(error: Error, index: Option<usize>) -> PyErr {
     let names: [(_, f64); NAMES.len()] = Params::DEFAULT.numbers();
     let Some(place) = names.iter().position(|(name, _)| *name == error.name()) else {
         return rejected(error);
     };
-    let name = match NAMES[place] {
-        "LINK_MOI_1" | "LINK_MOI_2" if task == Gymnasium::NAME => "LINK_MOI",
-        name => name,
-    };
+    let name = NAMES[place];
     let torque = places(name).position(|each| each == place).filter(|_| name == "AVAIL_TORQUE");
     named(error, Name(name, [index, torque]))
 }
@@ -239,9 +238,11 @@ fn render<'py>(
 
 /// Serializes a snapshot, for pickle. The crate's snapshots inside have a version.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {
-    let bytes = postcard::to_stdvec(snapshot);
-    let bytes = bytes.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-    Ok(PyBytes::new(py, &bytes))
+    Ok(PyBytes::new(py, &to_bytes(snapshot)?))
+}
+
+fn to_bytes(snapshot: &impl Serialize) -> PyResult<Vec<u8>> {
+    postcard::to_stdvec(snapshot).map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 
 /// Deserializes a snapshot.

@@ -1,7 +1,7 @@
-//! The single environments: one acrobot, bit-identical to Gymnasium's, or dm_control's swing-up.
+//! The single environments: one acrobot, bit-identical to Gymnasium's, or of another task.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host};
-use acrobot::task::{Gymnasium, Swingup, Task};
+use acrobot::task::{Balance, Gymnasium, Swingup, Task};
 use acrobot::{Portable, State, Step};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyValueError};
@@ -27,8 +27,9 @@ pub struct Acrobot {
 /// An acrobot of a task.
 #[derive(Clone, Serialize, Deserialize)]
 enum One {
-    Acrobot(acrobot::Acrobot<Host>),
+    Acrobot(acrobot::Acrobot<Damped<Host>>),
     Swingup(acrobot::Acrobot<Damped<Portable>, Swingup>),
+    Balance(acrobot::Acrobot<Damped<Portable>, Balance>),
 }
 
 /// Does something with the acrobot, whatever its task.
@@ -37,6 +38,7 @@ macro_rules! with_one {
         match $one {
             One::Acrobot($acrobot) => $result,
             One::Swingup($acrobot) => $result,
+            One::Balance($acrobot) => $result,
         }
     };
 }
@@ -45,6 +47,7 @@ impl One {
     fn new(task: &str) -> Self {
         match task {
             Swingup::NAME => Self::Swingup(acrobot::Acrobot::new(0)),
+            Balance::NAME => Self::Balance(acrobot::Acrobot::new(0)),
             _ => Self::Acrobot(acrobot::Acrobot::new(0)),
         }
     }
@@ -62,8 +65,7 @@ impl One {
     }
 
     fn set_params(&mut self, params: Params) -> PyResult<()> {
-        with_one!(self, acrobot => acrobot.set_params(params))
-            .map_err(|error| invalid(self.task(), error, None))
+        with_one!(self, acrobot => acrobot.set_params(params)).map_err(|error| invalid(error, None))
     }
 
     fn state(&self) -> State {
@@ -102,7 +104,7 @@ impl Inner {
             return Err(PyValueError::new_err(message));
         }
         let params = Params { torque_noise: self.noise, ..self.acrobot.params() };
-        params.validate().map_err(|error| invalid(self.acrobot.task(), error, None))?;
+        params.validate().map_err(|error| invalid(error, None))?;
         for (index, &torque) in self.torques.iter().enumerate() {
             let name = Name("AVAIL_TORQUE", [None, Some(index)]);
             let checked = Params { torques: [torque; 3], ..params }.validate();

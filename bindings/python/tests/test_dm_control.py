@@ -10,6 +10,10 @@ from dm_env import test_utils
 from test_swingup import RECORDED, TASKS, ours
 
 
+SWINGUP = "acrobot", "swingup", None
+TIMESTEP = {"control_timestep": 0.015}
+
+
 @TASKS
 def test_episodes_are_dm_controls(name, column):
     """From the same seed. Every other one of the recording begins in a state that was set."""
@@ -47,13 +51,25 @@ def test_a_step_after_the_time_limit_resets():
     assert short.control_timestep() == 0.025 and env.control_timestep() == 0.01
 
 
+@pytest.mark.parametrize("options", [{"n_sub_steps": 3}, {"control_timestep": 0.03}])
+def test_a_step_can_last_longer(options):
+    kwargs = {"random": 3, "time_limit": 0.06}
+    env, twin = (dm_control.load(*SWINGUP[:2], kwargs, each) for each in (options, None))
+    assert env.reset().first() and twin.reset().first() and env.control_timestep() == 0.03
+    for action in 0.5, -0.7:
+        step, [*_, expected] = env.step(action), [twin.step(action) for _ in range(3)]
+        assert step[:2] == expected[:2] and (env.gymnasium.state == twin.gymnasium.state).all()
+
+
 @pytest.mark.parametrize(
     ("error", "message", "arguments"),
     [
         (ValueError, "domain_name must be .*, got 'reacher'", ["reacher", "swingup"]),
         (ValueError, "task_name must be one of .*, got 'balance'", ["acrobot", "balance"]),
         (ValueError, "time_limit must be above 0 s", ["acrobot", "swingup", {"time_limit": 0}]),
-        (TypeError, "'n_sub_steps'", ["acrobot", "swingup", None, {"n_sub_steps": 2}]),
+        (ValueError, "legacy_step must be True", [*SWINGUP, {"legacy_step": False}]),
+        (ValueError, "n_sub_steps must be None", [*SWINGUP, {"n_sub_steps": 1, **TIMESTEP}]),
+        (ValueError, "control_timestep / dt must be .*, got 1.5", [*SWINGUP, TIMESTEP]),
     ],
 )
 def test_invalid_arguments_are_rejected(error, message, arguments):

@@ -9,7 +9,7 @@ import pytest
 from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, Uniform
 from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
-from vectors import CONTINUOUS, KINDS, SWINGUPS, V1, rejects
+from vectors import BALANCE, CONTINUOUS, KINDS, SWINGUPS, V1, rejects
 
 
 @pytest.fixture
@@ -20,14 +20,16 @@ def env():
     return env
 
 
-@pytest.mark.parametrize("name", [V1, CONTINUOUS, *SWINGUPS])
-@pytest.mark.filterwarnings("ignore:.*infinity")
+@pytest.mark.parametrize("name", [V1, CONTINUOUS, BALANCE, *SWINGUPS])
+@pytest.mark.filterwarnings("ignore:.*infinity", "ignore:.*normalized space")  # N m, as Pendulum
 def test_gymnasium_checks_pass_without_a_warning(name):
     check_env(gymnasium.make(name, render_mode="rgb_array").unwrapped)
 
 
 def test_the_observation_space_contains_initial_states_above_the_bounds_of_velocity():
     check_env(AcrobotEnv(MAX_VEL_1=1e-30, MAX_VEL_2=0.05), skip_render_check=True)
+    env = AcrobotEnv(MAX_VEL_1=np.inf, MAX_VEL_2=1e300)  # beyond float32
+    assert (env.observation_space.high[4:] == np.inf).all()
 
 
 def test_registration_and_spaces_are_those_of_gymnasium():
@@ -35,10 +37,11 @@ def test_registration_and_spaces_are_those_of_gymnasium():
     for name in ("observation_space", "action_space"):
         assert getattr(ours, name) == getattr(theirs, name)
     assert ours.metadata["render_fps"] == theirs.metadata["render_fps"]
-    limits = {V1: 500, CONTINUOUS: 500} | dict.fromkeys(SWINGUPS, 1000)
+    assert AcrobotEnv(dt=0.04).metadata["render_fps"] == 25, "real time"
+    limits = {V1: 500, CONTINUOUS: 500, BALANCE: 500} | dict.fromkeys(SWINGUPS, 1000)
     for name, limit in limits.items():
         env = gymnasium.make(name)
-        assert env.spec.reward_threshold == (None if name in SWINGUPS else -100)
+        assert env.spec.reward_threshold == (-100 if name in (V1, CONTINUOUS) else None)
         env.reset(seed=1)
         ends = [env.step(1 if name == V1 else [0.0])[3] for _ in range(limit)]
         assert ends == [False] * (limit - 1) + [True]

@@ -9,6 +9,7 @@ import gymnasium
 import numpy as np
 from gymnasium.envs.classic_control import acrobot
 from hypothesis import settings
+from vectors import SHARED
 
 STEPS = 500
 
@@ -37,7 +38,7 @@ def change(rng, envs):
         "MAX_VEL_1": lambda: rng.uniform(0.05, 50),
         "MAX_VEL_2": lambda: rng.uniform(0.05, 50),
     }
-    for name in [name for name in acrobot_rs.AcrobotEnv._NAMES if name.startswith("LINK")]:
+    for name in [name for name in SHARED if name.startswith("LINK")]:
         changes[name] = lambda: 10 ** rng.uniform(-1, 1)
     for name, draw in changes.items():
         if rng.random() < 0.25:

@@ -5,8 +5,8 @@ import pickle
 
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotEnv, AcrobotSwingupVectorEnv
-from acrobot_rs import AcrobotVectorEnv, LogUniform, Normal, Uniform
+from acrobot_rs import AcrobotBalanceVectorEnv, AcrobotContinuousVectorEnv, AcrobotEnv
+from acrobot_rs import AcrobotSwingupVectorEnv, AcrobotVectorEnv, LogUniform, Normal, Uniform
 from vectors import SINGLE_KINDS, rejects
 
 DRAWN = {"FRICTION_1": np.linspace(0, 0.1, 37), "LINK_MOI_2": Uniform(0.1, 0.2)}
@@ -20,6 +20,8 @@ VECTOR = (
     (AcrobotVectorEnv, "NextStep", 0.0, {"float64": True}),
     (AcrobotVectorEnv, "SameStep", LogUniform(0.1, 0.3), OWN),
     (AcrobotSwingupVectorEnv, "SameStep", 0.1, DRAWN),
+    (AcrobotBalanceVectorEnv, "NextStep", 0.1, DRAWN),
+    (AcrobotContinuousVectorEnv, "NextStep", 0.1, DRAWN),
 )
 
 

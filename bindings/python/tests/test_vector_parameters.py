@@ -16,7 +16,7 @@ from vectors import make_vec, rejects
         (ValueError, "AVAIL_TORQUE", [-1, 1], r" must be 3 numbers, such as \[-2, 0, 2\], got 2"),
         (ValueError, "AVAIL_TORQUE", [[1, 2, 3], [1, 2], [1, 2, 3]], r"\[1\] must be 3 numbers, s"),
         (ValueError, "book_or_nips", ["book", "nips", "b"], r"\[2\] must be 'book' .*, got 'b'"),
-        (ValueError, "LINK_COM_POS_2", Uniform(0, 1), "LINK_MOI must be above 0 if the centre"),
+        (ValueError, "LINK_COM_POS_2", Uniform(0, 1), "LINK_MOI_2 must be above 0 if the centre"),
         (TypeError, "AVAIL_TORQUE", Uniform(0, 1), " must be a sequence of 3 numbers, got 0"),
         (TypeError, "book_or_nips", Uniform(0, 1), " must be 'book' or 'nips', got 0"),
     ],
@@ -52,7 +52,8 @@ def test_the_number_given_is_in_the_message(name, value, number):
 def test_resets_draw_a_parameter_and_keep_others(name, gymnasium_episodes):
     """`test_recorded.py` has the order and the numbers of draws."""
     own = {each: np.linspace(0.5, 1.5, 20) for each in ("LINK_MASS_2", "dt")}
-    envs = make_vec(20, gymnasium_episodes=gymnasium_episodes, **own)
+    is_damped = name.startswith("FRICTION")
+    envs = make_vec(20, gymnasium_episodes=gymnasium_episodes and not is_damped, **own)
     draw = Uniform([0.1] * 3, [0.9, 0.9, 0.1]) if name == "AVAIL_TORQUE" else Uniform(0.1, 0.9)
     before = {each: envs.get_parameter(each) for each in envs._NAMES}
     setattr(envs, name, draw)
@@ -64,11 +65,39 @@ def test_resets_draw_a_parameter_and_keep_others(name, gymnasium_episodes):
         new = envs.get_parameter(name)
         assert (0.0999 < new[mask]).all() and (new[mask] < 0.9001).all()
         assert (new != old).reshape(20, -1).any(axis=1).tolist() == mask.tolist()
-        for each in set(envs._NAMES) - {name}:
+        for each in [each for each in envs._NAMES if not each.startswith(name)]:
             np.testing.assert_array_equal(envs.get_parameter(each), before[each])
     setattr(envs, name, [1.0] * 3 if name == "AVAIL_TORQUE" else 1.0)
     envs.reset()
     assert (envs.get_parameter(name) == 1.0).all()
+
+
+@pytest.mark.parametrize("float64", [False, True])
+def test_friction_changes_the_arithmetic_within_episodes(float64):
+    """A snapshot has the arithmetic."""
+    envs = make_vec(20, max_episode_steps=3, dt=Uniform(0.1, 0.2), float64=float64)
+    envs.reset(seed=1)
+    for _ in range(4):  # the last one resets
+        before = envs._native.__getstate__()
+        for friction in 0.1, [0.0] * 19 + [0.1], Uniform(0.0, 0.1):
+            envs.FRICTION_2 = friction
+            assert envs._native.__getstate__()[:3] != before[:3]
+            envs.FRICTION_2 = 0.0
+            assert envs._native.__getstate__() == before
+        envs.step(envs.action_space.sample())
+    with pytest.raises(ValueError, match="FRICTION_1 must be 0 unless"):
+        make_vec(3, gymnasium_episodes=True, FRICTION_1=0.1)
+
+
+def test_links_can_have_their_own_inertias():
+    envs = make_vec(3, LINK_MOI=LogUniform(1.0, 2.0), LINK_MOI_1=0.5)
+    envs.reset(seed=1)
+    assert (envs.get_parameter("LINK_MOI_1") == 0.5).all()
+    assert (envs.get_parameter("LINK_MOI_2") > 1.0).all()
+    with rejects(envs, TypeError, "LINK_MOI_1 must be a number, got None"):
+        envs.LINK_MOI_1 = None
+    envs.LINK_MOI = 3.0
+    assert envs.LINK_MOI_1 is None and (envs.get_parameter("LINK_MOI_1") == 3.0).all()
 
 
 def test_subclasses_can_draw_parameters_which_spaces_follow():

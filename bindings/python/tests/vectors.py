@@ -8,6 +8,7 @@ import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.envs.classic_control import AcrobotEnv as Gymnasiums
 from acrobot_rs.arrays import warn_of_other_sines
 from gymnasium.vector import AutoresetMode
 
@@ -16,6 +17,9 @@ SINGLE_KINDS = [kind for kind in KINDS if issubclass(kind, gymnasium.Env)]
 V1 = "acrobot_rs/Acrobot-v1"
 CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
 SWINGUPS = ["acrobot_rs/AcrobotSwingup-v0", "acrobot_rs/AcrobotSwingupSparse-v0"]
+BALANCE = "acrobot_rs/AcrobotBalance-v0"
+#: The parameters that Gymnasium's environment has, too. `gravity` has no name there.
+SHARED = [name for name in acrobot_rs.AcrobotEnv._NAMES if hasattr(Gymnasiums, name)]
 MODES = pytest.mark.parametrize("mode", AutoresetMode)
 
 
@@ -70,9 +74,7 @@ def different(count, seed):
     """A value of each parameter for each of these environments."""
     rng = np.random.default_rng(seed)
     values = {
-        name: list(rng.uniform(0.8, 1.2, count))
-        for name in acrobot_rs.AcrobotEnv._NAMES
-        if name.startswith("LINK")
+        name: list(rng.uniform(0.8, 1.2, count)) for name in SHARED if name.startswith("LINK")
     }
     values["dt"] = tuple(rng.uniform(0.05, 0.25, count).tolist())
     values["MAX_VEL_1"] = rng.uniform(2, 12, count)
@@ -80,7 +82,5 @@ def different(count, seed):
     values["AVAIL_TORQUE"] = rng.uniform(-2, 2, (count, 3))
     values["torque_noise_max"] = rng.choice([0.0, 0.5], count)
     values["book_or_nips"] = rng.choice(["book", "nips"], count).tolist()
-    assert values.keys() == set(acrobot_rs.AcrobotEnv._NAMES) - {"gravity"}, (
-        "Gymnasium's environment has no name for gravity"
-    )
+    assert values.keys() == set(SHARED)
     return values

@@ -168,7 +168,8 @@ impl<A: Arithmetic> Snapshot for Member<A> {
             assert_eq!(batch.set_member(0, self.clone()).is_ok(), valid);
             assert_steps(&mut batch);
         }
-        valid
+        // Bounds of velocity may be infinite.
+        valid && self.params.numbers().iter().all(|(_, number)| number.is_finite())
     }
 }
 

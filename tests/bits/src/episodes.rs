@@ -4,7 +4,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Viscous;
-use acrobot::task::{Draw, Draws, Gymnasium, Swingup, Task};
+use acrobot::task::{Balance, Draw, Draws, Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 
 use crate::{Digest, against};
@@ -93,13 +93,18 @@ fn damped_in<A: Arithmetic>() -> u64 {
 /// Every bit of 200 steps of the swing-up, with their rewards, from a state near the target and
 /// from one far away.
 pub fn swingup() -> [u64; 2] {
-    [swingup_in::<Damped<Reference>>(), swingup_in::<Damped<Fast>>()]
+    [task_in::<Damped<Reference>, Swingup>(), task_in::<Damped<Fast>, Swingup>()]
 }
 
-fn swingup_in<A: Arithmetic>() -> u64 {
+/// As [`swingup`], of the task to stay upright.
+pub fn balance() -> [u64; 2] {
+    [task_in::<Reference, Balance>(), task_in::<Fast, Balance>()]
+}
+
+fn task_in<A: Arithmetic, T: Task>() -> u64 {
     let mut digest = Digest::default();
     for start in [[3.0, 0.2, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0]] {
-        let mut acrobot = Acrobot::<A, Swingup>::new(0);
+        let mut acrobot = Acrobot::<A, T>::new(0);
         if acrobot.set_state(State::from(start).cast()).is_err() {
             return 0;
         }
@@ -220,6 +225,8 @@ pub const SUBNORMAL: [u64; 4] = [
 pub const DAMPED: [u64; 2] = [0xaa5b_ea28_3a02_5fe0, 0x02ab_1a17_374e_5871];
 
 pub const SWINGUP: [u64; 2] = [0x22a6_0076_4bda_c4c0, 0x4329_8e9d_2663_2406];
+
+pub const BALANCE: [u64; 2] = [0x7966_469b_cf83_61bb, 0x3c5d_97b5_d2a0_597e];
 
 pub const REFERENCE: u64 = 0xbb7e_cdbb_174c_3b77;
 pub const PORTABLE: u64 = 0xbc39_fafe_6c5c_432c;

@@ -6,7 +6,6 @@
 
 #![no_std]
 
-pub mod balance;
 pub mod episodes;
 pub mod oled;
 pub mod plan;

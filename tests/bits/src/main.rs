@@ -14,7 +14,7 @@ use std::process;
 use acrobot::arithmetic::{Micro, Reference};
 use acrobot::{Fast, Portable};
 use bits::episodes::*;
-use bits::{balance, plan, training};
+use bits::{plan, training};
 #[cfg(target_os = "none")]
 use semihosting::{println, process};
 // Linked because it is named.
@@ -32,7 +32,7 @@ fn main() -> ! {
         report("subnormal numbers", &subnormal(), &SUBNORMAL),
         report("friction", &damped(), &DAMPED),
         report("swing-up", &swingup(), &SWINGUP),
-        report("a user's task", &[balance::digest()], &[balance::DIGEST]),
+        report("balance", &balance(), &BALANCE),
         report("batches of 1 lane", &batches::<1, 20, 8>(), &BATCHES),
         report("batches of 4 lanes", &batches::<4, 5, 2>(), &BATCHES),
         // More of them do not fit into 256 KiB of flash.

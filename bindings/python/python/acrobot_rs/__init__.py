@@ -1,7 +1,7 @@
 """Gymnasium's Acrobot in Rust: bit-identical episodes, and a much faster vector environment.
 
-Importing this package registers ``Acrobot-v1`` and ``AcrobotContinuous-v0``, and dm_control's
-``AcrobotSwingup-v0`` and ``AcrobotSwingupSparse-v0``, all after ``acrobot_rs/``:
+Importing this package registers ``Acrobot-v1``, ``AcrobotContinuous-v0`` and ``AcrobotBalance-v0``,
+and dm_control's ``AcrobotSwingup-v0`` and ``AcrobotSwingupSparse-v0``, all after ``acrobot_rs/``:
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -18,7 +18,7 @@ from gymnasium.envs.registration import register
 
 from acrobot_rs import policy
 from acrobot_rs._native import MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS
-from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv
+from acrobot_rs.env import AcrobotBalanceEnv, AcrobotContinuousEnv, AcrobotEnv
 from acrobot_rs.parameters import LogUniform, Normal, Uniform
 from acrobot_rs.swingup import (
     AcrobotSwingupEnv,
@@ -26,9 +26,11 @@ from acrobot_rs.swingup import (
     AcrobotSwingupSparseVectorEnv,
     AcrobotSwingupVectorEnv,
 )
-from acrobot_rs.vector import AcrobotContinuousVectorEnv, AcrobotVectorEnv
+from acrobot_rs.vector import AcrobotBalanceVectorEnv, AcrobotContinuousVectorEnv, AcrobotVectorEnv
 
 __all__ = [
+    "AcrobotBalanceEnv",
+    "AcrobotBalanceVectorEnv",
     "AcrobotContinuousEnv",
     "AcrobotContinuousVectorEnv",
     "AcrobotEnv",
@@ -47,6 +49,7 @@ __version__ = version("acrobot-rs")
 for _kind, _id, _steps, _threshold in (
     ("Acrobot", "Acrobot-v1", MAX_STEPS, REWARD_THRESHOLD),
     ("AcrobotContinuous", "AcrobotContinuous-v0", MAX_STEPS, REWARD_THRESHOLD),
+    ("AcrobotBalance", "AcrobotBalance-v0", MAX_STEPS, None),
     ("AcrobotSwingup", "AcrobotSwingup-v0", SWINGUP_MAX_STEPS, None),
     ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", SWINGUP_MAX_STEPS, None),
 ):

@@ -10,7 +10,7 @@ import numpy as np
 from gymnasium.error import InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs._native import Acrobot
+from acrobot_rs._native import BALANCE_BOUND, Acrobot
 from acrobot_rs.arrays import must_be, numbers, plain_seed, reset_bounds
 from acrobot_rs.parameters import Equations, Parameters, Torques
 
@@ -177,3 +177,24 @@ class AcrobotContinuousEnv(AcrobotEnv):
         if math.isnan(torque):
             raise must_be("action", rule, repr(action), InvalidAction)
         return torque
+
+
+class AcrobotBalanceEnv(AcrobotContinuousEnv):
+    """Stay upright: :class:`AcrobotContinuousEnv` with a motor of 10 N m and steps of 0.02 s.
+
+    The reward is ``(2 - cos(theta1) - cos(theta1 + theta2)) / 4``: 1 upright, 0 hanging. An episode
+    begins upright, plus a uniform draw from -0.05 to 0.05 for each number of the state. No state
+    ends it; ``gymnasium.make`` truncates it after 500 steps.
+    """
+
+    dt = 0.02
+    AVAIL_TORQUE = (-10.0, 0.0, 10.0)
+
+    _TASK = "balance"
+    _BOUND = BALANCE_BOUND
+
+    def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
+        drawn = self.np_random.uniform(low, high, 4).astype(np.float32)
+        drawn[0] += np.float32(np.pi)
+        self.state = drawn if given is None else given
+        return self._native.observation()

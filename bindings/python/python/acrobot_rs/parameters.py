@@ -75,16 +75,20 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
     LINK_COM_POS_1: Each = 0.5  #: centre of mass from the joint, m; 0 or more
     LINK_COM_POS_2: Each = 0.5  #: centre of mass from the joint, m; 0 or more
     LINK_MOI: Each = 1.0  #: moment of inertia of each link about its centre, kg m²; 0 or more
+    LINK_MOI_1: Each | None = None  #: of link 1, kg m²; 0 or more; ``None``: ``LINK_MOI``
+    LINK_MOI_2: Each | None = None  #: of link 2, kg m²; 0 or more; ``None``: ``LINK_MOI``
     gravity: Each = 9.8  #: acceleration, downwards, m/s²; finite; Gymnasium's cannot change
     dt: Each = 0.2  #: duration of a step, s; above 0
-    MAX_VEL_1: Each = 4 * math.pi  #: of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38
-    MAX_VEL_2: Each = 9 * math.pi  #: of |θ̇2| after a step, rad/s; from 1.2e-38 to 3.4e38
+    MAX_VEL_1: Each = 4 * math.pi  #: of |θ̇1| after a step, rad/s; at least 1.2e-38; may be inf
+    MAX_VEL_2: Each = 9 * math.pi  #: of |θ̇2| after a step, rad/s; at least 1.2e-38; may be inf
     #: Torques of the actions 0, 1 and 2, N m; finite. A single environment may have others.
     AVAIL_TORQUE: EachTorques = (-1.0, 0.0, 1.0)
     #: Each step adds a uniform draw within ± this to the torque, N m; 0 or more. 0 draws nothing.
     torque_noise_max: Each = 0.0
     #: The equations of motion: of Sutton and Barto's book, or as printed in the 1996 paper.
     book_or_nips: EachEquations = "book"
+    FRICTION_1: Each = 0.0  #: viscous, of the fixed joint, N m s/rad; 0 or more
+    FRICTION_2: Each = 0.0  #: viscous, of the joint between the links, N m s/rad; 0 or more
 
     metadata: dict[str, Any]
     spec: Any
@@ -114,15 +118,20 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
         self._native = native
         self.render_mode = render_mode
         # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
-        for name in self._NAMES:
-            setattr(self, name, parameters.get(name, getattr(self, name)))
+        values = {name: getattr(self, name) for name in self._NAMES}
+        if "LINK_MOI" in parameters:
+            values |= {"LINK_MOI_1": None, "LINK_MOI_2": None}
+        for name, value in (values | {**parameters}).items():
+            if value is not None or name in parameters:
+                setattr(self, name, value)
         for name, space in self._spaces().items():
             setattr(self, name, space)
 
     @property
     def parameters(self) -> dict[str, Any]:
         """All parameters by their names: arguments that make the same environment again."""
-        return {name: getattr(self, name) for name in self._NAMES}
+        values = {name: getattr(self, name) for name in self._NAMES}
+        return {name: value for name, value in values.items() if value is not None}
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it unchangeable."""
@@ -145,7 +154,8 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
         else:
             torques = getattr(self.AVAIL_TORQUE, "low", self.AVAIL_TORQUE)
             actions = spaces.Discrete(np.shape(torques)[-1])
-        highest = np.array([1.0, 1.0, 1.0, 1.0, *velocities], dtype=np.float32)
+        with np.errstate(over="ignore"):
+            highest = np.array([1.0, 1.0, 1.0, 1.0, *velocities], dtype=np.float32)
         return {
             "action_space": actions,
             "observation_space": spaces.Box(-highest, highest, dtype=np.float32),
@@ -173,6 +183,11 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
                     rule = f"the parameters are {', '.join(self._NAMES)}"
                     raise AttributeError(f"{cls.__name__} has no attribute {name!r}; {rule}")
             super().__setattr__(name, value)
+            if name == "LINK_MOI":
+                vars(self).update(LINK_MOI_1=None, LINK_MOI_2=None)
+            if name == "dt" and isinstance(value, float):
+                fps = 15 if value == 0.2 else 1 / value  # Gymnasium's, or real time
+                self.metadata = {**self.metadata, "render_fps": fps}
             if is_made and name in ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2"):
                 for space, new in self._spaces().items():
                     current = getattr(self, space)

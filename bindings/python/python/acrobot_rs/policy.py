@@ -183,7 +183,11 @@ def save(
     if policy is None and any(type(each).__name__ == "Dropout" and each.training for each in model):
         what = "it has Dropout in training mode; call model.eval() before"
         raise ValueError(f"the model must be in evaluation mode: {what}")
-    is_swingup = policy is not None and bool(np.isinf(policy.observation_space.high).any())
+    is_swingup = (
+        policy is not None
+        and bool(np.isinf(policy.observation_space.high).any())
+        and policy.action_space == gym.spaces.Box(-1.0, 1.0, (1,), np.float32)
+    )
     scale = 1.0
     if policy is not None and isinstance(policy.action_space, gym.spaces.Box):
         low, high = float(policy.action_space.low[0]), float(policy.action_space.high[0])

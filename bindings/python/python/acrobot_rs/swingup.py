@@ -17,32 +17,26 @@ from acrobot_rs.vector import ManyEquations, ManyTorques, Numbers
 
 
 class Swingup(Parameters[Each, EachTorques, EachEquations]):
-    """The parameters of the swing-up: those of the first task with dm_control's values, and others.
+    """The parameters of the swing-up: those of the first task with dm_control's values.
 
     The largest number in ``AVAIL_TORQUE`` is the torque of the action 1, and the smallest that of
     -1. The spaces do not change.
     """
 
-    LINK_MOI_1: Each = 0.09557031250000002  #: about its centre of mass, kg m²; 0 or more
-    LINK_MOI_2: Each = 0.09530365719649563  #: about its centre of mass, kg m²; 0 or more
-    FRICTION_1: Each = 0.05  #: viscous, of the fixed joint, N m s/rad; 0 or more
-    FRICTION_2: Each = 0.05  #: viscous, of the joint between the links, N m s/rad; 0 or more
+    LINK_MOI = None  # type: ignore[assignment]
+    LINK_MOI_1: Each = 0.09557031250000002
+    LINK_MOI_2: Each = 0.09530365719649563
+    FRICTION_1: Each = 0.05
+    FRICTION_2: Each = 0.05
     gravity: Each = 9.81
     dt: Each = 0.01
     MAX_VEL_1: Each = 1e30
     MAX_VEL_2: Each = 1e30
     AVAIL_TORQUE: EachTorques = (-2.0, 0.0, 2.0)
 
-    _NAMES = (
-        *(name for name in Parameters._NAMES if name != "LINK_MOI"),
-        *("LINK_MOI_1", "LINK_MOI_2", "FRICTION_1", "FRICTION_2"),
-    )
     _TASK = "swingup"
     _BOUND = SWINGUP_BOUND
     _ACTION = "a number from -1 to 1"
-
-    #: Each link has its own. Access raises an ``AttributeError``.
-    LINK_MOI = property()  # type: ignore[assignment]
 
     def _limits(self) -> tuple[float, float, float, float]:
         return -1.0, 1.0, math.inf, math.inf
@@ -75,8 +69,6 @@ class AcrobotSwingupEnv(Swingup[float, Torques, Equations], AcrobotContinuousEnv
     True
     """
 
-    metadata: dict[str, Any] = {**AcrobotContinuousEnv.metadata, "render_fps": 100}
-
     def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
         drawn = np.array([*self.np_random.uniform(low, high, 2), 0.0, 0.0])
         self.state = drawn if given is None else given
@@ -108,13 +100,11 @@ class AcrobotSwingupVectorEnv(
     (1024, 6)
     """
 
-    metadata: dict[str, Any] = {**AcrobotContinuousVectorEnv.metadata, "render_fps": 100}
-
     def __init__(
         self, num_envs: int = 1, max_episode_steps: int | None = SWINGUP_MAX_STEPS, **others: Any
     ) -> None:
         """Make environments. Other arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
-        super().__init__(num_envs, max_episode_steps, gymnasium_episodes=False, **others)
+        super().__init__(num_envs, max_episode_steps, **others)
 
 
 class AcrobotSwingupSparseVectorEnv(

@@ -15,7 +15,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
-from acrobot_rs._native import MAX_STEPS, Batch
+from acrobot_rs._native import BALANCE_BOUND, MAX_STEPS, Batch
 from acrobot_rs.arrays import Seed, must_be, numbers, read_only
 from acrobot_rs.parameters import Drawn, Equations, Parameters, Torques
 
@@ -103,6 +103,8 @@ class AcrobotVectorEnv(
             if not (isinstance(count, Integral) and 0 < count < 2**32):
                 raise must_be(name, f"an integer from 1 to {2**32 - 1}", repr(count))
         if gymnasium_episodes:
+            if self._TASK != "acrobot":
+                raise must_be("gymnasium_episodes", "False in another task", True)
             if float64:
                 rule = "False with gymnasium_episodes, which computes in float64"
                 raise must_be("float64", rule, True)
@@ -281,7 +283,7 @@ class AcrobotVectorEnv(
     def get_parameter(self, name: str) -> NDArray[Any]:
         """A parameter of each environment, in a new array with a row of 3 of ``AVAIL_TORQUE``."""
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
-        if not isinstance(value, Drawn):
+        if value is not None and not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
         rows = np.empty((self.num_envs, 3 if is_row else 1))
         self._native.get(name, rows)
@@ -325,3 +327,15 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv, VectorEnv[Floats, NDArray[Any
     """
 
     _CONTINUOUS = True
+
+
+class AcrobotBalanceVectorEnv(
+    AcrobotContinuousVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]
+):
+    """Many :class:`acrobot_rs.AcrobotBalanceEnv`, without ``gymnasium_episodes``."""
+
+    dt = 0.02
+    AVAIL_TORQUE = (-10.0, 0.0, 10.0)
+
+    _TASK = "balance"
+    _BOUND = BALANCE_BOUND
