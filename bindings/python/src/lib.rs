@@ -1,6 +1,7 @@
 //! The native part of `acrobot_rs`. Gymnasium's interface is written in Python, in `python/`.
 
 mod batch;
+mod control;
 mod engine;
 mod pool;
 mod single;
@@ -39,6 +40,8 @@ mod _native {
     const SWINGUP_BOUND: f64 = Swingup::RESET_BOUNDS.high();
     #[pymodule_export]
     use super::batch::Batch;
+    #[pymodule_export]
+    use super::control::compute;
     #[pymodule_export]
     use super::single::Acrobot;
     use super::*;
