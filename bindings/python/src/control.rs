@@ -1,48 +1,48 @@
 //! The functions of `acrobot_rs.control`, each for many states at once.
 
-use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
+use acrobot::arithmetic::Damped;
 use acrobot::control::{self, ControlError, LinearModel, Lqr};
 use acrobot::physics::Pendulum;
-use acrobot::task::{Gymnasium, Swingup, Task};
-use acrobot::{Error, Fast, Portable, State};
+use acrobot::{Portable, State};
 use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use crate::{Name, Params, invalid, rejected, with};
+use crate::single::{Acrobot, One};
+use crate::{Params, rejected};
 
 /// Applies a function to each row of inputs. Returns the results of all rows.
 #[pyfunction]
 pub fn compute<'py>(
-    py: Python<'py>,
     function: &str,
-    params: &Bound<'py, PyDict>,
+    acrobot: PyRef<'py, Acrobot>,
     rows: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let params = read(params)?;
+    let (py, one) = (acrobot.py(), acrobot.inner.acrobot.clone());
+    drop(acrobot); // other threads may step it
     let rows = rows.as_slice()?.chunks_exact(rows.shape()[1]);
-    let results = py.detach(|| {
+    let results: PyResult<_> = py.detach(|| {
         let mut results = Vec::new();
         for row in rows {
-            results.extend(results_of(function, params, row)?);
+            results.extend(match function {
+                "simulate" => simulate(one.clone(), row)?,
+                _ => results_of(function, one.params(), row).map_err(rejected)?,
+            });
         }
         Ok(results)
     });
-    Ok(PyArray1::from_vec(py, results.map_err(|error: ControlError| rejected(error))?))
+    Ok(PyArray1::from_vec(py, results?))
 }
 
-/// The parameters by Python's names. A pendulum has neither actions nor noise.
-fn read(given: &Bound<'_, PyDict>) -> PyResult<Params> {
-    let mut params = Params::DEFAULT;
-    for (name, value) in given {
-        let name: String = name.extract()?;
-        if !matches!(&*name, "AVAIL_TORQUE" | "torque_noise_max") {
-            params = with::<f64>(params, Name(&name, [None; 2]), &value)?;
-        }
+/// The state that a row begins with, and that after each torque.
+fn simulate(mut acrobot: One, row: &[f64]) -> PyResult<Vec<f64>> {
+    let Some((&state, torques)) = row.split_first_chunk::<4>() else { return Ok(Vec::new()) };
+    acrobot.set_state(State::from(state))?;
+    let mut states = state.to_vec();
+    for &torque in torques {
+        acrobot.step(torque)?;
+        states.extend(<[f64; 4]>::from(acrobot.state()));
     }
-    let task = if given.contains("LINK_MOI")? { Gymnasium::NAME } else { Swingup::NAME };
-    params.validate().map_err(|error| invalid(task, error, None))?;
-    Ok(params)
+    Ok(states)
 }
 
 /// The results for a row: vectors of four numbers, then the other numbers.
@@ -72,21 +72,6 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, C
         ("regulator", &[state, q1, q2, q3, q4], &[torque, r]) => {
             of_regulator(control::regulator(&at(state)?, torque, &[q1, q2, q3, q4], r)?)
         }
-        ("fast", ..) => simulate::<Damped<Fast>>(params, row)?,
-        ("portable", ..) => simulate::<Damped<Portable>>(params, row)?,
-        ("reference", ..) => simulate::<Damped<Reference>>(params, row)?,
-        _ => simulate::<Damped<Host>>(params, row)?,
+        _ => Vec::new(),
     })
-}
-
-/// The state that a row begins with, and that after each torque.
-fn simulate<A: Arithmetic>(params: Params, row: &[f64]) -> Result<Vec<f64>, Error> {
-    let Some((&state, torques)) = row.split_first_chunk::<4>() else { return Ok(Vec::new()) };
-    let mut pendulum = Pendulum::<A>::new(params.cast(), State::from(state).cast())?;
-    let mut states = vec![pendulum.state().cast()];
-    for &torque in torques {
-        pendulum.step(A::Scalar::from_f64(torque))?;
-        states.push(pendulum.state().cast());
-    }
-    Ok(states.into_iter().flat_map(<[f64; 4]>::from).collect())
 }
