@@ -28,7 +28,7 @@ UPRIGHT = (math.pi, 0.0, 0.0, 0.0)
 
 
 def energy(state: ArrayLike, env: Env = None) -> Floats:
-    """The mechanical energy, J, which is 0 at rest at the height of the fixed joint."""
+    """The mechanical energy, J. Its potential part is 0 at the height of the fixed joint."""
     return _call("energy", (), env, state=state)
 
 
@@ -85,8 +85,8 @@ def regulator(
 def simulate(state: ArrayLike, torques: ArrayLike, env: Env = None) -> Floats:
     """The state and those after each of ``n`` torques, N m: ``(..., n + 1, 4)``.
 
-    They have the bits of an environment: this one, or :class:`acrobot_rs.AcrobotContinuousEnv`.
-    Nothing clips the torques or ends the simulation.
+    They are bit-identical to those of the environment, but nothing clips the torques or ends the
+    simulation.
     """
     states = 1 + math.prod(np.shape(torques)[-1:])
     return _call("simulate", (states, 4), env, state=state, torques=torques)
