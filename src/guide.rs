@@ -37,6 +37,7 @@ pages! {
     c "c.md",
     wasm "wasm.md",
     python "python.md",
+    python_control "python-control.md",
     python_many "python-many.md",
     python_parameters "python-parameters.md",
     numbers "numbers.md",

@@ -1,6 +1,7 @@
 //! The native part of `acrobot_rs`. Gymnasium's interface is written in Python, in `python/`.
 
 mod batch;
+mod control;
 mod engine;
 mod pool;
 mod single;
@@ -41,6 +42,8 @@ mod _native {
     const BALANCE_BOUND: f64 = Balance::RESET_BOUNDS.high();
     #[pymodule_export]
     use super::batch::Batch;
+    #[pymodule_export]
+    use super::control::compute;
     #[pymodule_export]
     use super::single::Acrobot;
     use super::*;

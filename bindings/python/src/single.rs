@@ -19,14 +19,14 @@ pyo3::import_exception!(gymnasium.error, ResetNeeded);
 /// One acrobot: its parameters and its state. Random numbers come from the environment's generator.
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Acrobot {
-    inner: Inner,
+    pub inner: Inner,
     /// The array that Python has as the state, since the last step. Its elements can be assigned.
     lent: Option<Py<PyAny>>,
 }
 
 /// An acrobot of a task.
 #[derive(Clone, Serialize, Deserialize)]
-enum One {
+pub enum One {
     Acrobot(acrobot::Acrobot<Damped<Host>>),
     Swingup(acrobot::Acrobot<Damped<Portable>, Swingup>),
     Balance(acrobot::Acrobot<Damped<Portable>, Balance>),
@@ -60,7 +60,7 @@ impl One {
         with_one!(self, acrobot => name(acrobot))
     }
 
-    fn params(&self) -> Params {
+    pub fn params(&self) -> Params {
         with_one!(self, acrobot => *acrobot.params())
     }
 
@@ -68,26 +68,26 @@ impl One {
         with_one!(self, acrobot => acrobot.set_params(params)).map_err(|error| invalid(error, None))
     }
 
-    fn state(&self) -> State {
+    pub fn state(&self) -> State {
         with_one!(self, acrobot => acrobot.state())
     }
 
-    fn set_state(&mut self, state: State) -> PyResult<()> {
+    pub fn set_state(&mut self, state: State) -> PyResult<()> {
         with_one!(self, acrobot => acrobot.set_state(state)).map_err(rejected)
     }
 
-    fn step(&mut self, torque: f64) -> PyResult<Step> {
+    pub fn step(&mut self, torque: f64) -> PyResult<Step> {
         with_one!(self, acrobot => acrobot.step_torque(torque)).map_err(rejected)
     }
 }
 
 /// What a snapshot contains.
 #[derive(Clone, Serialize, Deserialize)]
-struct Inner {
+pub struct Inner {
     /// Whether actions are torques.
     continuous: bool,
     /// Without noise and with the default torques: the crate has three.
-    acrobot: One,
+    pub acrobot: One,
     torques: Vec<f64>,
     noise: f64,
     /// Whether the state was set or reset: Gymnasium's environment has none before the first reset.

@@ -62,7 +62,10 @@ def test_checkers(checker, tmp_path):
     for name in NAMES:
         page = (ROOT / f"docs/{name}.md").read_text()
         blocks = re.findall(r"^```py(?:thon)?\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-        texts[f"{name}.py"] = "\n".join(["# pyright: reportMissingImports=false", *blocks])
+        options = (
+            "# pyright: reportMissingImports=false\n# mypy: allow-untyped-defs, allow-untyped-calls"
+        )
+        texts[f"{name}.py"] = "\n".join([options, *blocks])
     for name, text in texts.items():
         (tmp_path / name).write_text(text)
     run = subprocess.run(

@@ -16,7 +16,7 @@ from importlib.metadata import version
 
 from gymnasium.envs.registration import register
 
-from acrobot_rs import policy
+from acrobot_rs import control, policy
 from acrobot_rs._native import MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS
 from acrobot_rs.env import AcrobotBalanceEnv, AcrobotContinuousEnv, AcrobotEnv
 from acrobot_rs.parameters import LogUniform, Normal, Uniform
@@ -42,6 +42,7 @@ __all__ = [
     "LogUniform",
     "Normal",
     "Uniform",
+    "control",
     "policy",
 ]
 __version__ = version("acrobot-rs")

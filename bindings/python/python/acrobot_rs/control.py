@@ -1,0 +1,149 @@
+"""Energy, linear models, regulators and simulations of the acrobot.
+
+A state is the last axis: theta1, theta2 (rad) and their velocities (rad/s). Arrays broadcast in the
+axes before it. ``env`` is a single environment of this package, whose parameters count, or ``None``
+for Gymnasium's.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from acrobot_rs._native import compute
+from acrobot_rs.arrays import must_be, numbers
+from acrobot_rs.env import AcrobotEnv
+
+Env = gymnasium.Env[Any, Any] | None
+Floats = NDArray[np.float64]
+Pair = tuple[Floats, Floats]
+
+#: Standing upright at rest.
+UPRIGHT = (math.pi, 0.0, 0.0, 0.0)
+
+
+def energy(state: ArrayLike, env: Env = None) -> Floats:
+    """The mechanical energy, J. Its potential part is 0 at the height of the fixed joint."""
+    return _call("energy", (), env, state=state)
+
+
+def mass_matrix(state: ArrayLike, env: Env = None) -> Floats:
+    """M, ``(..., 2, 2)``, kg m². The kinetic energy is q̇ᵀ M q̇ / 2."""
+    return _call("mass_matrix", (2, 2), env, state=state)
+
+
+def derivative(state: ArrayLike, torque: ArrayLike, env: Env = None) -> Floats:
+    """The velocities and accelerations, ``(..., 4)``, under a torque, N m."""
+    return _call("derivative", (4,), env, state=state, torque=torque)
+
+
+def inverse_dynamics(state: ArrayLike, accelerations: ArrayLike, env: Env = None) -> Floats:
+    """The torques of both joints, N m, for two accelerations, rad/s². The motor has the second."""
+    return _call("inverse_dynamics", (2,), env, state=state, accelerations=accelerations)
+
+
+def difference(state: ArrayLike, target: ArrayLike = UPRIGHT) -> Floats:
+    """The state minus the target, with differences of angles from -pi to pi."""
+    return _call("difference", (4,), None, state=state, target=target)
+
+
+def linearize(state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None) -> Pair:
+    """A, ``(..., 4, 4)``, and B, ``(..., 4, 1)``, of ẋ = A x + B u."""
+    rows = _call("linearize", (5, 4), env, state=state, torque=torque)
+    return rows[..., :4, :], rows[..., 4, :, None]
+
+
+def linearize_step(state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None) -> Pair:
+    """A and B of one step of ``dt``, after which x is A x + B u."""
+    rows = _call("linearize_step", (5, 4), env, state=state, torque=torque)
+    return rows[..., :4, :], rows[..., 4, :, None]
+
+
+def lqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
+    """The linear-quadratic regulator of a model of one step.
+
+    Q weights the state and R, a number or ``(..., 1, 1)``, the torque. Returns K, ``(..., 1, 4)``,
+    of u = -K x, and P, ``(..., 4, 4)``: xᵀ P x is the cost of all steps.
+    """
+    rows = _call("lqr", (5, 4), None, A=A, B=B, Q=Q, R=R)
+    return rows[..., :1, :], rows[..., 1:, :]
+
+
+def regulator(
+    Q: ArrayLike, R: ArrayLike, state: ArrayLike = UPRIGHT, torque: ArrayLike = 0.0, env: Env = None
+) -> Pair:
+    """K and P of :func:`lqr` for an acrobot in equilibrium under a torque, N m."""
+    rows = _call("regulator", (5, 4), env, state=state, Q=Q, torque=torque, R=R)
+    return rows[..., :1, :], rows[..., 1:, :]
+
+
+def simulate(state: ArrayLike, torques: ArrayLike, env: Env = None) -> Floats:
+    """The state and those after each of ``n`` torques, N m: ``(..., n + 1, 4)``.
+
+    They are bit-identical to those of the environment, but nothing clips the torques or ends the
+    simulation.
+    """
+    states = 1 + math.prod(np.shape(torques)[-1:])
+    return _call("simulate", (states, 4), env, state=state, torques=torques)
+
+
+class Animation:
+    """An animated SVG of states, ``(n, 4)``, one each ``dt``, in real time. Notebooks show it."""
+
+    def __init__(self, states: ArrayLike, env: Env = None) -> None:
+        acrobot = _acrobot(env)
+        dt, lengths = acrobot.dt, (acrobot.LINK_LENGTH_1, acrobot.LINK_LENGTH_2)
+        steps = max(1, round(0.04 / dt))  # of a frame; up to 25 frames a second
+        angles = np.unwrap(np.reshape(states, (-1, 4))[:, :2], axis=0)[::steps]
+        seconds = (len(angles) - 1) * steps * dt
+        first, second = (
+            '<animateTransform attributeName="transform" type="rotate" repeatCount="indefinite" '
+            f'dur="{seconds:.3f}s" values="{";".join(f"{angle:.1f}" for angle in column)}"/>'
+            f'<path d="M-.1 0h.2v{length}h-.2z" fill="#0cc"/><circle r=".1" fill="#cc0"/>'
+            for column, length in zip(-np.degrees(angles.T), lengths)
+        )
+        reach = sum(lengths) + 0.2
+        self.svg = (
+            '<svg xmlns="http://www.w3.org/2000/svg" width="300" '
+            f'viewBox="{-reach} {-reach} {2 * reach} {2 * reach}">'
+            f'<g>{first}<g transform="translate(0 {lengths[0]})"><g>{second}</g></g></g></svg>\n'
+        )
+
+    def save(self, path: str | Path) -> None:
+        Path(path).write_text(self.svg)
+
+    def _repr_html_(self) -> str:
+        return self.svg
+
+
+_GYMNASIUM = AcrobotEnv()
+#: The last axes of inputs. Others have 4, and ``torques`` any number.
+_AXES = {"torque": (), "accelerations": (2,), "A": (4, 4), "B": (4, 1), "Q": (4, 4), "R": (1, 1)}
+
+
+def _acrobot(env: Env) -> Any:
+    return _GYMNASIUM if env is None else env.unwrapped
+
+
+def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) -> Floats:
+    """Call a native function for each state. A result has this shape."""
+    parts = []
+    for name, value in inputs.items():
+        array = numbers(name, "numbers", value, None)
+        axes = array.shape[-1:] if name == "torques" else _AXES.get(name, (4,))
+        if array.ndim < len(axes) and array.size == math.prod(axes):
+            array = array.reshape(axes)  # a number or a vector for a matrix
+        others = array.shape[: array.ndim - len(axes)]
+        if array.shape != (*others, *axes):
+            rule = f"an array of shape (..., {', '.join(map(str, axes))})"
+            raise must_be(name, rule, array.shape)
+        parts.append(array.reshape(*others, math.prod(axes)))
+    others = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
+    rows = np.concatenate([np.broadcast_to(x, (*others, x.shape[-1])) for x in parts], axis=-1)
+    rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]), np.float64)
+    return compute(function, _acrobot(env)._native, rows).reshape((*others, *shape))

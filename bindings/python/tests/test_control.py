@@ -1,0 +1,97 @@
+"""`acrobot_rs.control` has the bits of environments, and agrees with other people's programs."""
+
+import acrobot_rs
+import control as python_control
+import gymnasium
+import numpy as np
+import pytest
+from acrobot_rs import control
+from numpy.testing import assert_allclose
+from scipy.differentiate import jacobian
+
+PARAMS = {"LINK_MASS_1": 1.3, "dt": 0.05, "AVAIL_TORQUE": (-1.0, 0.0, 1.0)}
+ENV = acrobot_rs.AcrobotSwingupEnv(FRICTION_1=0.2, LINK_MOI_1=0.3, **PARAMS)
+ONE = np.eye(4)
+
+
+def agree(ours, theirs):
+    """Within 1e-10 of the largest element."""
+    assert_allclose(ours, theirs, rtol=0, atol=1e-10 * np.abs(theirs).max())
+
+
+@pytest.mark.parametrize(
+    "env", [gymnasium.make("acrobot_rs/AcrobotContinuous-v0", **PARAMS), ENV, None]
+)
+def test_simulate_has_the_bits_of_an_environment(env):
+    stepped = (env or acrobot_rs.AcrobotContinuousEnv()).unwrapped
+    stepped.reset(options={"state": [2.5, 0.1, 0.0, 0.0]})  # a goal of Gymnasium's task
+    torques, states = np.random.default_rng(0).uniform(-1, 1, 400), [stepped.state]
+    for torque in torques:
+        stepped.step([torque])
+        states.append(stepped.state)
+    assert control.simulate(states[0], torques, env).tobytes() == np.array(states).tobytes()
+
+
+def test_regulators_are_those_of_python_control_and_scipy():
+    rng = np.random.default_rng(0)
+    for _ in range(200):
+        A, B = control.linearize_step(rng.uniform(-1, 1, 4), 0.5, ENV)
+        factor = rng.normal(size=(4, 4))
+        Q, R = factor @ factor.T + ONE, rng.uniform(0.1, 1)
+        K, P = control.lqr(A, B, Q, R)
+        for ours, theirs in zip((K, P), python_control.dlqr(A, B, Q, R, method="scipy")):
+            agree(ours, theirs)
+    assert (control.lqr(A, B[:, 0], Q, [[R]])[0] == K).all()
+    A, B = control.linearize_step(control.UPRIGHT, 0.0, ENV)
+    agree(control.regulator(ONE, 0.1, env=ENV)[0], python_control.dlqr(A, B, ONE, 0.1)[0])
+
+
+def test_linear_models_are_derivatives():
+    x = np.random.default_rng(0).uniform(-1, 1, (5, 200))
+    for linearize, function in (
+        (control.linearize, lambda x: control.derivative(x.T[..., :4], x.T[..., 4], ENV).T),
+        (
+            control.linearize_step,
+            lambda x: control.simulate(x.T[..., :4], x.T[..., 4:], ENV).T[:, 1],
+        ),
+    ):
+        A, B = linearize(x[:4].T, x[4], ENV)
+        agree(
+            np.concatenate([A, B], axis=-1),
+            jacobian(function, x, initial_step=0.1).df.transpose(2, 0, 1),
+        )
+
+
+def test_motions_obey_mechanics():
+    states = np.random.default_rng(0).uniform(-1, 1, (2, 3, 4))
+    accelerations = control.derivative(states, [0.1, 0.2, 0.3], ENV)[..., 2:]
+    torques = control.inverse_dynamics(states, accelerations, ENV)
+    assert_allclose(torques, [[[0, 0.1], [0, 0.2], [0, 0.3]]] * 2, atol=1e-13)
+    momenta = control.mass_matrix(states, ENV) @ states[..., 2:, None]
+    kinetic = control.energy(states, ENV) - control.energy(states * [1, 1, 0, 0], ENV)
+    assert_allclose(kinetic, (states[..., 2:] * momenta[..., 0]).sum(axis=-1) / 2)
+
+
+@pytest.mark.parametrize(
+    "function, arguments, message",
+    [
+        ("energy", ([0.0] * 3,), r"state must be .* shape \(\.\.\., 4\), got \(3,\)"),
+        ("simulate", ([0.0] * 4, [np.inf]), "torque must be a finite number of N m, got inf"),
+        ("regulator", (ONE, 1, [1, 0, 0, 0]), "the state must be in equilibrium"),
+    ],
+)
+def test_errors_say_what_is_valid(function, arguments, message):
+    with pytest.raises(ValueError, match=message):
+        getattr(control, function)(*arguments)
+
+
+@pytest.mark.parametrize("dt, frames", [(0.01, 76), (0.2, 16)])
+def test_an_animation_is_in_real_time(dt, frames, tmp_path):
+    """Three turns in 3 s, which pass the jump of the angle."""
+    states = np.outer(np.arange(0, 3 + dt / 2, dt) * 2 * np.pi, [1, 0, 0, 0])
+    animation = control.Animation(control.difference(states), acrobot_rs.AcrobotEnv(dt=dt))
+    animation.save(tmp_path / "turns.svg")
+    text = (tmp_path / "turns.svg").read_text()
+    values = np.float64(text.split('values="')[1].split('"')[0].split(";"))
+    assert 'dur="3.000s"' in text
+    assert_allclose(values - values[0], np.linspace(0, -1080, frames), atol=0.11)
