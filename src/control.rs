@@ -1,8 +1,7 @@
-//! What a controller needs of the model: linearization, inverse dynamics, velocities and a
-//! linear-quadratic regulator.
+//! Control: linear models, inverse dynamics, linear-quadratic regulators, and plans that swing up.
 //!
 //! A result is finite, or a [`ControlError`] that names what overflows with extreme parameters. The
-//! guide holds the acrobot upright with [a regulator](crate::guide::control).
+//! [guide](crate::guide::control) has a regulator on a machine, and the costs of a plan.
 
 mod cost;
 mod deviation;

@@ -5,7 +5,7 @@
 //! [`Acrobot`](crate::Acrobot).
 //!
 //! For your own integrator, use [`Pendulum::derivative`]. [`control`](crate::control)
-//! linearizes and regulates. The guide explains the [equations](crate::guide::equations).
+//! linearizes, regulates and plans. The guide explains the [equations](crate::guide::equations).
 
 /// Repeats items for both scalars, named `S`: arithmetic in a `const fn` needs a concrete type.
 macro_rules! for_f32_and_f64 {

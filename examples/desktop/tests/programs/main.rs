@@ -61,13 +61,15 @@ impl Folder {
     }
 }
 
-/// The pictures of the README and of docs/embedded-topics.md.
+/// The pictures of the README, of docs/control.md and of docs/embedded-topics.md.
 #[test]
 fn pictures_are_those_of_the_pages() {
     let folder = Folder::new("pictures");
     folder.printed("episode");
     folder.printed("episode --balance --out balance.svg --definition balance.txt");
-    for name in ["episode.svg", "balance.svg", "balance.txt"] {
+    folder.printed("costs --definition costs.txt");
+    let names = ["episode.svg", "balance.svg", "balance.txt", "costs.svg", "costs.txt"];
+    for name in names {
         let recorded = common::text_of(&format!("docs/{name}"));
         let drawn = String::from_utf8(folder.read(name)).unwrap();
         assert!(drawn == recorded, "docs/{name} differs");
