@@ -7,8 +7,8 @@
 //   reset, may be null. The functions report null, misaligned pointers and zeroed memory, but not
 //   freed memory.
 // - Arguments, and arrays of a struct, must not overlap. The functions report arrays that overlap,
-//   and a result or error that would overwrite the acrobot or the batch.
-// - Arrays have `count` elements, one for each acrobot, and `index` counts from 0.
+//   and a result or error that would overwrite the acrobot, batch or planner.
+// - Arrays have `count` elements, in a batch one for each acrobot; `index` and `step` count from 0.
 // - Numbers are in SI units.
 
 
@@ -235,16 +235,14 @@ typedef struct {
   acrobot_draw_t torque_noise;
 } acrobot_draws_t;
 
-// One step, linearized: a deviation x from the state becomes A x + B u, where u is that from the
-// torque, N m.
+// One step, linearized: deviations x of the state and u of the torque become A x + B u.
 typedef struct {
-  // A by rows: the derivatives of a number after the step by the four before it.
+  // A by rows, and B.
   float a[4][4];
-  // B: the derivatives by the torque.
   float b[4];
 } acrobot_linear_model_t;
 
-// The weights of what a plan costs, all 0 or more: a larger one makes its term smaller.
+// The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
 typedef struct {
   // Of 2 − 2 cos x, for the deviation x of each angle from upright, 1/s.
   float angles[2];
@@ -252,13 +250,13 @@ typedef struct {
   float velocities[2];
   // Of the squared torque, 1/((N m)² s).
   float torque;
-  // Of the square of the torque's change from one step to the next, 1/(N m)².
+  // Of the squared change of the torque from step to step, 1/(N m)².
   float torque_change;
   // Of the absolute value of the motor's power, 1/J.
   float power;
   // Of the time that the tip is below `height`, 1/s.
   float below;
-  // The height of the tip above the fixed joint, m, from which on `below` costs nothing.
+  // A height of the tip above the fixed joint, m.
   float height;
   // `below` costs half where the tip is so far below `height`, m; above 0.
   float margin;
@@ -271,11 +269,11 @@ typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_PLANNER_SIZE];
 } acrobot_planner_t;
 
-// A step of a plan. Zeros are a step without a torque.
+// A step of a plan. Zeros are one without a torque.
 typedef struct {
   // The state before the step.
   acrobot_state_t state;
-  // The torque, N m.
+  // N m.
   float torque;
   // What to add to the torque for each deviation from `state`, N m per rad and per rad/s.
   acrobot_state_t gain;
@@ -399,21 +397,20 @@ acrobot_status_t acrobot_lqr(acrobot_t *acrobot,
     acrobot_state_t *gain,
     acrobot_error_t *error);
 
-// The weights that acrobot_planner_init uses by default, to change some.
+// The default weights.
 acrobot_status_t acrobot_default_cost(const acrobot_params_t *params, acrobot_cost_t *cost);
 
-// Makes a planner for a machine with these parameters, whose `dt` is the time between two
-// decisions, and a largest torque, N m. `cost` may be null. No velocity of a plan reaches the
-// bounds of the parameters.
+// For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
+// torque, N m. No velocity of a plan reaches its bound. A null `cost` has the default weights.
 acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
     const acrobot_params_t *params,
     float limit,
     const acrobot_cost_t *cost,
     acrobot_error_t *error);
 
-// Plans from a state until a plan ends where a regulator holds the acrobot upright. `length`
-// receives the plan's number of knots, at most `count`: the first of `knots`. `error` names the
-// `tries` if so many find no plan. A rejected call may change `knots`.
+// Plans until a plan ends where a regulator holds the acrobot upright. `length` receives its number
+// of knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
+// may change knots.
 acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
     const acrobot_state_t *start,
     uint32_t tries,
@@ -423,9 +420,8 @@ acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
     size_t *length,
     acrobot_error_t *error);
 
-// Improves a plan by at most so many iterations. It then begins in the state `start`, so the rest
-// of a plan can be planned again while the machine moves. `cost` receives its cost: the lower, the
-// better. A rejected call may change `knots`.
+// Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
+// `cost` receives what it costs.
 acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
     const acrobot_state_t *start,
     uint32_t iterations,
@@ -434,8 +430,8 @@ acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
     float *cost,
     acrobot_error_t *error);
 
-// The torque at a step, N m: that of the plan's knot, and after the plan that of the regulator.
-// Limit it to that of your motor, which needs more torque than the plan to correct deviations.
+// The torque at a step of a plan, N m, and after it that of the regulator. Clamp it to that of your
+// motor.
 acrobot_status_t acrobot_planner_follow(const acrobot_planner_t *planner,
     const acrobot_knot_t *knots,
     size_t length,
@@ -443,8 +439,7 @@ acrobot_status_t acrobot_planner_follow(const acrobot_planner_t *planner,
     const acrobot_state_t *state,
     float *torque);
 
-// The torque without a plan, N m, at most the largest: it pumps energy until the regulator can
-// catch the acrobot. It computes less than a plan, and succeeds later.
+// The torque without a plan, N m, at most the largest. It pumps energy until the regulator holds.
 acrobot_status_t acrobot_planner_decide(acrobot_planner_t *planner,
     const acrobot_state_t *state,
     float *torque,

@@ -23,13 +23,11 @@ pub unsafe extern "C" fn acrobot_deviation(
     })
 }
 
-/// One step, linearized: a deviation x from the state becomes A x + B u, where u is that from the
-/// torque, N m.
+/// One step, linearized: deviations x of the state and u of the torque become A x + B u.
 #[repr(C)]
 pub struct acrobot_linear_model_t {
-    /// A by rows: the derivatives of a number after the step by the four before it.
+    /// A by rows, and B.
     pub a: [[f32; 4]; 4],
-    /// B: the derivatives by the torque.
     pub b: [f32; 4],
 }
 

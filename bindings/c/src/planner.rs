@@ -25,12 +25,12 @@ impl Holder for acrobot_planner_t {
     const TAG: u32 = u32::from_le_bytes(*b"plan");
 }
 
-/// A step of a plan. Zeros are a step without a torque.
+/// A step of a plan. Zeros are one without a torque.
 #[repr(C)]
 pub struct acrobot_knot_t {
     /// The state before the step.
     pub state: acrobot_state_t,
-    /// The torque, N m.
+    /// N m.
     pub torque: f32,
     /// What to add to the torque for each deviation from `state`, N m per rad and per rad/s.
     pub gain: acrobot_state_t,
@@ -38,7 +38,7 @@ pub struct acrobot_knot_t {
     pub workspace: [f32; 2],
 }
 
-/// The weights of what a plan costs, all 0 or more: a larger one makes its term smaller.
+/// The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_cost_t {
@@ -48,13 +48,13 @@ pub struct acrobot_cost_t {
     pub velocities: [f32; 2],
     /// Of the squared torque, 1/((N m)² s).
     pub torque: f32,
-    /// Of the square of the torque's change from one step to the next, 1/(N m)².
+    /// Of the squared change of the torque from step to step, 1/(N m)².
     pub torque_change: f32,
     /// Of the absolute value of the motor's power, 1/J.
     pub power: f32,
     /// Of the time that the tip is below `height`, 1/s.
     pub below: f32,
-    /// The height of the tip above the fixed joint, m, from which on `below` costs nothing.
+    /// A height of the tip above the fixed joint, m.
     pub height: f32,
     /// `below` costs half where the tip is so far below `height`, m; above 0.
     pub margin: f32,
@@ -62,7 +62,6 @@ pub struct acrobot_cost_t {
     pub arrival: f32,
 }
 
-/// The knots of the caller.
 fn knots_of(
     planner: *const acrobot_planner_t,
     knots: *const acrobot_knot_t,
@@ -75,7 +74,7 @@ fn knots_of(
     Ok(knots)
 }
 
-/// The weights that acrobot_planner_init uses by default, to change some.
+/// The default weights.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_default_cost(
     params: *const acrobot_params_t,
@@ -83,16 +82,14 @@ pub unsafe extern "C" fn acrobot_default_cost(
 ) -> acrobot_status_t {
     status(|| {
         check(cost)?;
-        let weights = Cost::new(&read(params)?.try_into()?);
-        // SAFETY: both are `repr(C)` and have the same numbers.
-        cost.write(transmute::<Cost<f32>, acrobot_cost_t>(weights));
+        // SAFETY: both are `repr(C)` and have the same fields.
+        cost.write(transmute::<Cost<f32>, _>(Cost::new(&read(params)?.try_into()?)));
         Ok(())
     })
 }
 
-/// Makes a planner for a machine with these parameters, whose `dt` is the time between two
-/// decisions, and a largest torque, N m. `cost` may be null. No velocity of a plan reaches the
-/// bounds of the parameters.
+/// For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
+/// torque, N m. No velocity of a plan reaches its bound. A null `cost` has the default weights.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_init(
     planner: *mut acrobot_planner_t,
@@ -106,7 +103,7 @@ pub unsafe extern "C" fn acrobot_planner_init(
         let cost = match cost.is_null() {
             true => Cost::new(&params),
             // SAFETY: as above.
-            false => transmute::<acrobot_cost_t, Cost<f32>>(read(cost)?),
+            false => transmute::<_, Cost<f32>>(read(cost)?),
         };
         Holder::init(planner, Planner::with_cost(params, limit, cost)?)
     };
@@ -116,9 +113,9 @@ pub unsafe extern "C" fn acrobot_planner_init(
     })
 }
 
-/// Plans from a state until a plan ends where a regulator holds the acrobot upright. `length`
-/// receives the plan's number of knots, at most `count`: the first of `knots`. `error` names the
-/// `tries` if so many find no plan. A rejected call may change `knots`.
+/// Plans until a plan ends where a regulator holds the acrobot upright. `length` receives its number
+/// of knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
+/// may change knots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_plan(
     planner: *mut acrobot_planner_t,
@@ -138,9 +135,8 @@ pub unsafe extern "C" fn acrobot_planner_plan(
     })
 }
 
-/// Improves a plan by at most so many iterations. It then begins in the state `start`, so the rest
-/// of a plan can be planned again while the machine moves. `cost` receives its cost: the lower, the
-/// better. A rejected call may change `knots`.
+/// Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
+/// `cost` receives what it costs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_improve(
     planner: *mut acrobot_planner_t,
@@ -158,8 +154,8 @@ pub unsafe extern "C" fn acrobot_planner_improve(
     })
 }
 
-/// The torque at a step, N m: that of the plan's knot, and after the plan that of the regulator.
-/// Limit it to that of your motor, which needs more torque than the plan to correct deviations.
+/// The torque at a step of a plan, N m, and after it that of the regulator. Clamp it to that of your
+/// motor.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_follow(
     planner: *const acrobot_planner_t,
@@ -177,8 +173,7 @@ pub unsafe extern "C" fn acrobot_planner_follow(
     })
 }
 
-/// The torque without a plan, N m, at most the largest: it pumps energy until the regulator can
-/// catch the acrobot. It computes less than a plan, and succeeds later.
+/// The torque without a plan, N m, at most the largest. It pumps energy until the regulator holds.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_decide(
     planner: *mut acrobot_planner_t,

@@ -155,8 +155,8 @@ static uint64_t plan(float limit, float dt, size_t count)
     add(&digest, 1);
     ACCEPTED(acrobot_planner_init(&planner, &params, limit, NULL, NULL));
     ACCEPTED(acrobot_planner_plan(&planner, &HANGING, 64, 4, knots, count, &length, NULL));
+    ACCEPTED(acrobot_state(&acrobot, &state));
     for (size_t i = 0; i < length; i++) {
-        ACCEPTED(acrobot_state(&acrobot, &state));
         ACCEPTED(acrobot_planner_follow(&planner, knots, length, i, &state, &torque));
         torque = torque > 10 ? 10 : torque < -10 ? -10 : torque;
         ACCEPTED(acrobot_step_torque(&acrobot, torque, &step, NULL));

@@ -164,23 +164,20 @@ static void controllers(void)
     acrobot_params_t params;
     acrobot_cost_t cost;
     acrobot_linear_model_t model;
-    acrobot_state_t state, gain;
+    acrobot_state_t x;
     acrobot_step_t step;
-    float torque, number;
+    float number, torque;
     ACCEPTED(acrobot_init(&acrobot, 0));
     ACCEPTED(acrobot_params(&acrobot, &params));
-
-    // The step is almost linear near the state of the model.
     ACCEPTED(acrobot_linearize_step(&acrobot, &UPRIGHT, 0, &model, NULL));
     ACCEPTED(acrobot_set_state(&acrobot, &LEANING, NULL));
     ACCEPTED(acrobot_step_torque(&acrobot, .01f, &step, NULL));
-    ACCEPTED(acrobot_deviation(&acrobot, &UPRIGHT, &state));
-    CHECK(near(state.theta2, .01f * (model.b[1] - model.a[1][0])));
-    CHECK(near(state.dtheta1, .01f * (model.b[2] - model.a[2][0])));
+    ACCEPTED(acrobot_deviation(&acrobot, &UPRIGHT, &x));
+    CHECK(near(x.theta2, .01f * (model.b[1] - model.a[1][0])));
 
-    // With 0 iterations, the cost of a torque of 2 N m for 0.2 s.
+    // The cost of 2 N m for 0.2 s, before the torque is improved.
     ACCEPTED(acrobot_default_cost(&params, &cost));
-    CHECK(cost.torque == .1f && cost.below == 2 && cost.height == 2 && cost.margin == .2f);
+    CHECK(cost.torque == .1f && cost.height == 2);
     cost.below = cost.arrival = 0;
     ACCEPTED(acrobot_planner_init(&planner, &params, 5, &cost, NULL));
     ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 0, &knot, 1, &number, NULL));
@@ -189,9 +186,9 @@ static void controllers(void)
     CHECK(near(number, 0) && near(knot.torque, 0));
 
     // After a plan, and without one, the regulator holds.
-    ACCEPTED(acrobot_lqr(&acrobot, &UPRIGHT, &WEIGHTS, 1, &gain, NULL));
+    ACCEPTED(acrobot_lqr(&acrobot, &UPRIGHT, &WEIGHTS, 1, &x, NULL));
     ACCEPTED(acrobot_planner_follow(&planner, &knot, 1, 1, &LEANING, &torque));
-    CHECK(near(torque, .01f * gain.theta1));
+    CHECK(near(torque, .01f * x.theta1));
     ACCEPTED(acrobot_planner_decide(&planner, &LEANING, &number, NULL));
     CHECK(number == torque);
 }
