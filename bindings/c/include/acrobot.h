@@ -408,9 +408,9 @@ acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
     const acrobot_cost_t *cost,
     acrobot_error_t *error);
 
-// Plans until a plan ends where a regulator holds the acrobot upright. `length` receives its number
-// of knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
-// may change knots.
+// Plans until a plan ends where a regulator holds the acrobot upright. `length` receives its
+// number of knots, which are the first. `error` names the `tries` if so many find no plan.
+// Rejected calls may change knots.
 acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
     const acrobot_state_t *start,
     uint32_t tries,
@@ -430,8 +430,8 @@ acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
     float *cost,
     acrobot_error_t *error);
 
-// The torque at a step of a plan, N m, and after it that of the regulator. Clamp it to that of your
-// motor.
+// The torque at a step of a plan, N m, and after it that of the regulator. Clamp it to that of
+// your motor.
 acrobot_status_t acrobot_planner_follow(const acrobot_planner_t *planner,
     const acrobot_knot_t *knots,
     size_t length,

@@ -82,8 +82,9 @@ pub unsafe extern "C" fn acrobot_default_cost(
 ) -> acrobot_status_t {
     status(|| {
         check(cost)?;
+        let weights = Cost::new(&read(params)?.try_into()?);
         // SAFETY: both are `repr(C)` and have the same fields.
-        cost.write(transmute::<Cost<f32>, _>(Cost::new(&read(params)?.try_into()?)));
+        cost.write(transmute::<Cost<f32>, acrobot_cost_t>(weights));
         Ok(())
     })
 }
@@ -103,7 +104,7 @@ pub unsafe extern "C" fn acrobot_planner_init(
         let cost = match cost.is_null() {
             true => Cost::new(&params),
             // SAFETY: as above.
-            false => transmute::<_, Cost<f32>>(read(cost)?),
+            false => transmute::<acrobot_cost_t, Cost<f32>>(read(cost)?),
         };
         Holder::init(planner, Planner::with_cost(params, limit, cost)?)
     };
@@ -113,9 +114,9 @@ pub unsafe extern "C" fn acrobot_planner_init(
     })
 }
 
-/// Plans until a plan ends where a regulator holds the acrobot upright. `length` receives its number
-/// of knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
-/// may change knots.
+/// Plans until a plan ends where a regulator holds the acrobot upright. `length` receives its
+/// number of knots, which are the first. `error` names the `tries` if so many find no plan.
+/// Rejected calls may change knots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_plan(
     planner: *mut acrobot_planner_t,
@@ -154,8 +155,8 @@ pub unsafe extern "C" fn acrobot_planner_improve(
     })
 }
 
-/// The torque at a step of a plan, N m, and after it that of the regulator. Clamp it to that of your
-/// motor.
+/// The torque at a step of a plan, N m, and after it that of the regulator. Clamp it to that of
+/// your motor.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_follow(
     planner: *const acrobot_planner_t,
