@@ -18,6 +18,7 @@ use crate::physics::{Params, positions};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(C)] // for bindings/c
 pub struct Cost<S = f64> {
     /// Of 2 − 2 cos x, for the deviation x of each angle from upright: x² where it is small. 1/s.
     /// Raised, the links are upright for longer.

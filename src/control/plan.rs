@@ -11,6 +11,7 @@ use crate::physics::State;
 /// A step of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(C)] // for bindings/c
 pub struct Knot<S> {
     /// The state before the step.
     pub state: State<S>,

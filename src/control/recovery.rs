@@ -147,7 +147,8 @@ pub(super) fn is_below<S: Real>(state: State<S>, [bound1, bound2]: [S; 2]) -> bo
 
 /// U with P = Uᵀ U for a symmetric, positive definite P.
 fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
-    [0, 1, 2, 3].map(|i| {
+    [0, 1, 2, 3].map(|i: usize| {
+        let i = i % 4; // without it, a Cortex-M0 checks bounds
         let root = Real::sqrt(p[i][i]);
         let row = p[i].map(|x| x / root);
         for (other, x) in p.iter_mut().zip(row) {

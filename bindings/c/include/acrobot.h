@@ -1,4 +1,4 @@
-// Gymnasium's Acrobot in C and C++: one or a batch, in single precision.
+// Gymnasium's Acrobot in C and C++: one or a batch, and plans, in single precision.
 //
 // - You provide the memory, and may reuse it at any time. No function allocates, aborts or has
 //   global state. Threads and interrupts may use different acrobots at the same time.
@@ -7,8 +7,8 @@
 //   reset, may be null. The functions report null, misaligned pointers and zeroed memory, but not
 //   freed memory.
 // - Arguments, and arrays of a struct, must not overlap. The functions report arrays that overlap,
-//   and a result or error that would overwrite the acrobot or the batch.
-// - Arrays have `count` elements, one for each acrobot, and `index` counts from 0.
+//   and a result or error that would overwrite the acrobot, batch or planner.
+// - Arrays have `count` elements, in a batch one for each acrobot; `index` and `step` count from 0.
 // - Numbers are in SI units.
 
 
@@ -74,6 +74,9 @@
 
 // Its alignment. malloc may align less, on microcontrollers to 8 bytes.
 #define ACROBOT_ALIGN 16
+
+// Bytes of an acrobot_planner_t.
+#define ACROBOT_PLANNER_SIZE 384
 
 // Bytes of an acrobot_action_space_t.
 #define ACROBOT_ACTION_SPACE_SIZE 64
@@ -232,6 +235,52 @@ typedef struct {
   acrobot_draw_t torque_noise;
 } acrobot_draws_t;
 
+// One step, linearized: deviations x of the state and u of the torque become A x + B u.
+typedef struct {
+  // A by rows, and B.
+  float a[4][4];
+  float b[4];
+} acrobot_linear_model_t;
+
+// The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
+typedef struct {
+  // Of 2 − 2 cos x, for the deviation x of each angle from upright, 1/s.
+  float angles[2];
+  // Of θ̇1² and θ̇2², s/rad².
+  float velocities[2];
+  // Of the squared torque, 1/((N m)² s).
+  float torque;
+  // Of the squared change of the torque from step to step, 1/(N m)².
+  float torque_change;
+  // Of the absolute value of the motor's power, 1/J.
+  float power;
+  // Of the time that the tip is below `height`, 1/s.
+  float below;
+  // A height of the tip above the fixed joint, m.
+  float height;
+  // `below` costs half where the tip is so far below `height`, m; above 0.
+  float margin;
+  // Of ln(1 + e), where e is 1 for an end that the regulator surely holds.
+  float arrival;
+} acrobot_cost_t;
+
+// Plans swing-ups for one machine. Call acrobot_planner_init first. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_PLANNER_SIZE];
+} acrobot_planner_t;
+
+// A step of a plan. Zeros are one without a torque.
+typedef struct {
+  // The state before the step.
+  acrobot_state_t state;
+  // N m.
+  float torque;
+  // What to add to the torque for each deviation from `state`, N m per rad and per rad/s.
+  acrobot_state_t gain;
+  // For the planner.
+  float workspace[2];
+} acrobot_knot_t;
+
 // Draws random actions: Gymnasium's `action_space`. You may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_ACTION_SPACE_SIZE];
@@ -327,6 +376,13 @@ acrobot_status_t acrobot_deviation(const acrobot_t *acrobot,
     const acrobot_state_t *target,
     acrobot_state_t *deviation);
 
+// Linearizes one step of the acrobot about any state and torque, N m.
+acrobot_status_t acrobot_linearize_step(acrobot_t *acrobot,
+    const acrobot_state_t *state,
+    float torque,
+    acrobot_linear_model_t *model,
+    acrobot_error_t *error);
+
 // The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque is
 // −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
 //
@@ -339,6 +395,54 @@ acrobot_status_t acrobot_lqr(acrobot_t *acrobot,
     const acrobot_state_t *q,
     float r,
     acrobot_state_t *gain,
+    acrobot_error_t *error);
+
+// The default weights.
+acrobot_status_t acrobot_default_cost(const acrobot_params_t *params, acrobot_cost_t *cost);
+
+// For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
+// torque, N m. No velocity of a plan reaches its bound. A null `cost` has the default weights.
+acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
+    const acrobot_params_t *params,
+    float limit,
+    const acrobot_cost_t *cost,
+    acrobot_error_t *error);
+
+// Plans until a plan ends where a regulator holds the acrobot upright. `length` receives its
+// number of knots, which are the first. `error` names the `tries` if so many find no plan.
+// Rejected calls may change knots.
+acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
+    const acrobot_state_t *start,
+    uint32_t tries,
+    uint64_t seed,
+    acrobot_knot_t *knots,
+    size_t count,
+    size_t *length,
+    acrobot_error_t *error);
+
+// Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
+// `cost` receives what it costs.
+acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
+    const acrobot_state_t *start,
+    uint32_t iterations,
+    acrobot_knot_t *knots,
+    size_t length,
+    float *cost,
+    acrobot_error_t *error);
+
+// The torque at a step of a plan, N m, and after it that of the regulator. Clamp it to that of
+// your motor.
+acrobot_status_t acrobot_planner_follow(const acrobot_planner_t *planner,
+    const acrobot_knot_t *knots,
+    size_t length,
+    size_t step,
+    const acrobot_state_t *state,
+    float *torque);
+
+// The torque without a plan, N m, at most the largest. It pumps energy until the regulator holds.
+acrobot_status_t acrobot_planner_decide(acrobot_planner_t *planner,
+    const acrobot_state_t *state,
+    float *torque,
     acrobot_error_t *error);
 
 // Gymnasium's `action_space.seed(seed)`.

@@ -1,6 +1,6 @@
-//! A linear-quadratic regulator.
+//! A linear model and a linear-quadratic regulator.
 
-use acrobot::control::{difference, regulator};
+use acrobot::control::{LinearModel, difference, linearize_step, regulator};
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, State};
 
@@ -20,6 +20,31 @@ pub unsafe extern "C" fn acrobot_deviation(
         let target = State::from(read(target)?);
         target.validate()?;
         Ok(State::from(difference(acrobot.inner().pendulum().state(), target)).into())
+    })
+}
+
+/// One step, linearized: deviations x of the state and u of the torque become A x + B u.
+#[repr(C)]
+pub struct acrobot_linear_model_t {
+    /// A by rows, and B.
+    pub a: [[f32; 4]; 4],
+    pub b: [f32; 4],
+}
+
+/// Linearizes one step of the acrobot about any state and torque, N m.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_linearize_step(
+    acrobot: *mut acrobot_t,
+    state: *const acrobot_state_t,
+    torque: f32,
+    model: *mut acrobot_linear_model_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    change(acrobot, model, error, |acrobot| {
+        check(model)?;
+        let pendulum = Pendulum::<Fast>::new(*acrobot.params(), read(state)?.into())?;
+        let LinearModel { a, b } = linearize_step(&pendulum, torque)?;
+        Ok(acrobot_linear_model_t { a, b })
     })
 }
 

@@ -19,6 +19,8 @@ pub mod single;
 
 pub mod control;
 
+pub mod planner;
+
 pub mod action_space;
 
 pub mod batch;

@@ -158,7 +158,7 @@ pub fn optional<T>(start: *mut T, count: usize) -> Result<*mut [T], Rejected> {
 }
 
 /// Rejects a result or error that would overwrite the holder. The caller may omit it.
-unsafe fn check_result<T, H: Holder>(to: *const T, holder: *const H) -> Result<(), Rejected> {
+pub unsafe fn check_result<T, H: Holder>(to: *const T, holder: *const H) -> Result<(), Rejected> {
     if to.is_null() {
         return Ok(());
     }

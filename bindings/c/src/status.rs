@@ -3,7 +3,7 @@
 use core::ffi::{c_char, c_int};
 
 use acrobot::Error;
-use acrobot::control::ControlError;
+use acrobot::control::{ControlError, NoPlan};
 
 #[repr(C)]
 pub enum acrobot_status_t {
@@ -95,6 +95,9 @@ impl From<ControlError> for Rejected {
     fn from(error: ControlError) -> Self {
         match error {
             ControlError::Invalid(error) => error.into(),
+            ControlError::NotFinite { name, value } => {
+                Self::number(name, value, "", "finite in each element")
+            }
             ControlError::NotInEquilibrium { rate } => {
                 let rule = "in equilibrium: velocities 0, accelerations up to 0.01 rad/s²";
                 Self::number("target", rate, "", rule)
@@ -103,6 +106,17 @@ impl From<ControlError> for Rejected {
             _ => {
                 let rule = "finite; target, dt, gravity and weights allow no regulator";
                 Self::number("gain", f64::NAN, "", rule)
+            }
+        }
+    }
+}
+
+impl From<NoPlan> for Rejected {
+    fn from(error: NoPlan) -> Self {
+        match error {
+            NoPlan::Invalid(error) => error.into(),
+            NoPlan::NotFound { tries } => {
+                Self::number("tries", tries.into(), "", "enough to find a plan")
             }
         }
     }

@@ -9,6 +9,14 @@
 // From tests/bits/src/episodes.rs: FAST, and the first two of BATCHES.
 static const uint64_t FAST = UINT64_C(0x273b096c8e81c01c);
 static const uint64_t BATCH = UINT64_C(0xeae8bc44fb2bab5e), TINY = UINT64_C(0xcc78d47481084cf5);
+// A shorter plan, and, where the memory suffices, that of tests/bits/src/plan.rs.
+static const uint64_t SHORT = UINT64_C(0x3d669e8a9c17ee9c);
+#if __STDC_HOSTED__
+#define KNOTS 1100
+static const uint64_t PLAN = UINT64_C(0xb0b7dcc0ba4c1bcf);
+#else
+#define KNOTS 60
+#endif
 
 // FNV-1a over 64-bit words.
 #define OFFSET UINT64_C(0xcbf29ce484222325)
@@ -127,6 +135,43 @@ static uint64_t batch_of_twenty(bool tiny)
     return digest;
 }
 
+// Plans from hanging at rest, and follows the plan.
+static uint64_t plan(float limit, float dt, size_t count)
+{
+    static const acrobot_state_t HANGING = {0, 0, 0, 0};
+    static acrobot_knot_t knots[KNOTS];
+    acrobot_planner_t planner;
+    acrobot_t acrobot;
+    acrobot_params_t params;
+    acrobot_state_t state;
+    acrobot_step_t step;
+    float torque;
+    size_t length;
+    uint64_t digest = OFFSET;
+    ACCEPTED(acrobot_init(&acrobot, 0));
+    ACCEPTED(acrobot_params(&acrobot, &params));
+    params.dt = dt;
+    ACCEPTED(acrobot_set_params(&acrobot, &params, NULL));
+    add(&digest, 1);
+    ACCEPTED(acrobot_planner_init(&planner, &params, limit, NULL, NULL));
+    ACCEPTED(acrobot_planner_plan(&planner, &HANGING, 64, 4, knots, count, &length, NULL));
+    ACCEPTED(acrobot_state(&acrobot, &state));
+    for (size_t i = 0; i < length; i++) {
+        ACCEPTED(acrobot_planner_follow(&planner, knots, length, i, &state, &torque));
+        torque = torque > 10 ? 10 : torque < -10 ? -10 : torque;
+        ACCEPTED(acrobot_step_torque(&acrobot, torque, &step, NULL));
+        ACCEPTED(acrobot_state(&acrobot, &state));
+        add(&digest, 1);
+        add_floats(&digest, &knots[i].state, 4);
+        add_floats(&digest, &state, 4);
+        add_floats(&digest, &knots[i].gain, 4);
+        for (int j = 0; j < 4; j++) {
+            add_floats(&digest, &knots[i].torque, 1);
+        }
+    }
+    return digest;
+}
+
 int main(void)
 {
     uint64_t digest = OFFSET;
@@ -136,5 +181,9 @@ int main(void)
     CHECK(digest == FAST);
     CHECK(batch_of_twenty(false) == BATCH);
     CHECK(batch_of_twenty(true) == TINY);
+    CHECK(plan(20, .05f, 60) == SHORT);
+#if __STDC_HOSTED__
+    CHECK(plan(7, .01f, KNOTS) == PLAN);
+#endif
     return report("bits");
 }

@@ -5,13 +5,14 @@
 #define COUNT 3
 #define INF __builtin_inff()
 
-static const acrobot_state_t REST = {0, 0, 0, 0}, FAR = {INF, 0, 0, 0};
+static const acrobot_state_t REST = {0, 0, 0, 0}, UP = {3.14159f, 0, 0, 0}, FAR = {INF, 0, 0, 0};
 #define WITH_MASS1(mass1) \
     {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK}
 static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
 // `main` reverses one.
 static acrobot_draws_t draws, reversed;
 static const acrobot_state_t ONES = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
+static acrobot_knot_t knots[COUNT];
 // Neither actions nor dynamics. The lowest byte of the last three is one.
 static const int UNKNOWN[] = {-1, 3, 255, 256, 257, -256};
 static const bool MASK[COUNT] = {true, false, true};
@@ -30,8 +31,10 @@ static acrobot_status_t step_batch(acrobot_batch_t *batch, void *rewards)
 }
 
 // What holds the value that a function uses.
-enum { ALONE, ACTIONS, BATCH };
-static const size_t SIZES[] = {ACROBOT_SIZE, ACROBOT_ACTION_SPACE_SIZE, ACROBOT_BATCH_SIZE(COUNT)};
+enum { ALONE, ACTIONS, BATCH, PLANNER, HOLDERS };
+static const size_t SIZES[] = {
+    ACROBOT_SIZE, ACROBOT_ACTION_SPACE_SIZE, ACROBOT_BATCH_SIZE(COUNT), ACROBOT_PLANNER_SIZE,
+};
 enum { NEEDED, OPTIONAL, NONE };
 enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
 
@@ -60,6 +63,8 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     ERROR(ALONE, acrobot_draw_params(acrobot, &reversed, out)) \
     RESULT(ALONE, float, acrobot_energy(acrobot, out)) \
     RESULT(ALONE, float, acrobot_tip_height(acrobot, out)) \
+    RESULT(ALONE, acrobot_linear_model_t, acrobot_linearize_step(acrobot, &REST, 0, out, NULL)) \
+    ERROR(ALONE, acrobot_linearize_step(acrobot, &REST, INF, &model, out)) \
     RESULT(ALONE, acrobot_state_t, acrobot_deviation(acrobot, &REST, out)) \
     RESULT(ALONE, acrobot_state_t, acrobot_lqr(acrobot, &REST, &ONES, 1, out, NULL)) \
     ERROR(ALONE, acrobot_lqr(acrobot, &FAR, &ONES, 1, &x, out)) \
@@ -76,7 +81,14 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     RESULT(BATCH, acrobot_state_t, acrobot_batch_state_of(batch, 0, out)) \
     ERROR(BATCH, acrobot_batch_set_state_of(batch, 0, &FAR, out)) \
     RESULT(BATCH, acrobot_params_t, acrobot_batch_params(batch, out)) \
-    ERROR(BATCH, acrobot_batch_set_params(batch, &NO_MASS, out))
+    ERROR(BATCH, acrobot_batch_set_params(batch, &NO_MASS, out)) \
+    RESULT(PLANNER, size_t, acrobot_planner_plan(planner, &UP, 1, 4, knots, COUNT, out, NULL)) \
+    ERROR(PLANNER, acrobot_planner_plan(planner, &FAR, 1, 4, knots, COUNT, &length, out)) \
+    RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, COUNT, out, NULL)) \
+    ERROR(PLANNER, acrobot_planner_improve(planner, &FAR, 1, knots, COUNT, &torque, out)) \
+    RESULT(PLANNER, float, acrobot_planner_follow(planner, knots, COUNT, 0, &UP, out)) \
+    RESULT(PLANNER, float, acrobot_planner_decide(planner, &UP, out, NULL)) \
+    ERROR(PLANNER, acrobot_planner_decide(planner, &FAR, &torque, out))
 
 struct call {
     int holder, optional, status;
@@ -97,8 +109,12 @@ static acrobot_status_t call(int index, void *holder, void *pointer)
     acrobot_t *acrobot = (acrobot_t *)holder;
     acrobot_action_space_t *action_space = (acrobot_action_space_t *)holder;
     acrobot_batch_t *batch = (acrobot_batch_t *)holder;
+    acrobot_planner_t *planner = (acrobot_planner_t *)holder;
+    acrobot_linear_model_t model;
     acrobot_step_t step;
     acrobot_state_t x;
+    float torque;
+    size_t length;
 #define CALL(holder, type, optional, status, ...) \
     if (index-- == 0) { \
         type *out = (type *)pointer; \
@@ -133,7 +149,9 @@ static void *hold(int holder)
     acrobot_batch_t *batch;
     ACCEPTED(holder == ALONE     ? acrobot_init((acrobot_t *)memory, 42)
              : holder == ACTIONS ? acrobot_action_space_init((acrobot_action_space_t *)memory, 42)
-                                 : acrobot_batch_init(memory, SIZE, COUNT, 42, &batch));
+             : holder == PLANNER
+                 ? acrobot_planner_init((acrobot_planner_t *)memory, &PARAMS, 1, NULL, NULL)
+                 : acrobot_batch_init(memory, SIZE, COUNT, 42, &batch));
     __builtin_memcpy(saved, held, SIZE);
     return memory;
 }
@@ -146,7 +164,7 @@ static void holders(void)
         expect(i, held + 1, spare, ACROBOT_ERROR_MISALIGNED);
         // `other` contains zeros.
         expect(i, other, spare, ACROBOT_ERROR_NOT_INITIALIZED);
-        expect(i, hold((holder + 1) % 3), spare, ACROBOT_ERROR_NOT_INITIALIZED);
+        expect(i, hold((holder + 1) % HOLDERS), spare, ACROBOT_ERROR_NOT_INITIALIZED);
         expect(i, hold(holder), spare, TABLE[i].status);
     }
     __builtin_memcpy(other, hold(BATCH), sizeof other);
@@ -240,6 +258,36 @@ static void arguments_of_an_acrobot(void)
     CHECK(same(&step.observation, &twin_step.observation, sizeof step.observation));
 }
 
+// Each of these calls is rejected.
+static void arguments_of_a_planner(void)
+{
+    acrobot_planner_t *planner = (acrobot_planner_t *)hold(PLANNER);
+    acrobot_knot_t *inside = (acrobot_knot_t *)(void *)held;
+    acrobot_cost_t cost;
+    size_t length;
+    float number;
+    CHECK(sizeof *planner == ACROBOT_PLANNER_SIZE);
+    REJECTED(NULL, acrobot_default_cost(NULL, &cost));
+    REJECTED(NULL, acrobot_default_cost(&PARAMS, NULL));
+    ACCEPTED(acrobot_default_cost(&PARAMS, &cost));
+    cost.power = -1;
+    REJECTED(NULL, acrobot_planner_init(NULL, &PARAMS, 1, NULL, NULL));
+    REJECTED(NULL, acrobot_planner_init(planner, NULL, 1, NULL, NULL));
+    REJECTED(OVERLAP, acrobot_planner_init(planner, &PARAMS, 0, NULL, (acrobot_error_t *)planner));
+    OUT_OF_RANGE(acrobot_planner_init(planner, &PARAMS, 1, &cost, &error),
+                 "power", -1, "per J", "finite and at least 0 per J");
+    REJECTED(NULL, acrobot_planner_plan(planner, &REST, 2, 4, NULL, COUNT, &length, NULL));
+    REJECTED(OVERLAP, acrobot_planner_plan(planner, &REST, 2, 4, inside, 1, &length, NULL));
+    REJECTED(OVERLAP, acrobot_planner_improve(planner, &REST, 2, inside, 1, &number, NULL));
+    REJECTED(OUT_OF_RANGE, acrobot_planner_follow(planner, knots, COUNT, 0, &FAR, &number));
+    CHECK(same(planner, saved, sizeof *planner));
+    OUT_OF_RANGE(acrobot_planner_plan(planner, &REST, 2, 4, knots, COUNT, &length, &error),
+                 "tries", 2, "", "enough to find a plan");
+    knots[0].torque = INF;
+    REJECTED(OUT_OF_RANGE, acrobot_planner_improve(planner, &UP, 2, knots, COUNT, &number, &error));
+    CHECK(same_text(error.name, "cost") && same_text(error.rule, "finite in each element"));
+}
+
 static void a_new_batch(void)
 {
     acrobot_batch_t *batch;
@@ -313,6 +361,7 @@ int main(void)
     holders();
     pointers();
     arguments_of_an_acrobot();
+    arguments_of_a_planner();
     a_new_batch();
     arguments_of_a_batch();
     CHECK(same_text(acrobot_status_text(ACROBOT_OK), "no error"));

@@ -154,10 +154,50 @@ static void drawn_parameters(void)
     }
 }
 
+static void controllers(void)
+{
+    static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1315927f, 0, 0, 0};
+    static const acrobot_state_t WEIGHTS = {1, 1, 1, 1};
+    acrobot_knot_t knot = {HANGING, 2, HANGING, {0, 0}};
+    acrobot_t acrobot;
+    acrobot_planner_t planner;
+    acrobot_params_t params;
+    acrobot_cost_t cost;
+    acrobot_linear_model_t model;
+    acrobot_state_t x;
+    acrobot_step_t step;
+    float number, torque;
+    ACCEPTED(acrobot_init(&acrobot, 0));
+    ACCEPTED(acrobot_params(&acrobot, &params));
+    ACCEPTED(acrobot_linearize_step(&acrobot, &UPRIGHT, 0, &model, NULL));
+    ACCEPTED(acrobot_set_state(&acrobot, &LEANING, NULL));
+    ACCEPTED(acrobot_step_torque(&acrobot, .01f, &step, NULL));
+    ACCEPTED(acrobot_deviation(&acrobot, &UPRIGHT, &x));
+    CHECK(near(x.theta2, .01f * (model.b[1] - model.a[1][0])));
+
+    // The cost of 2 N m for 0.2 s, before the torque is improved.
+    ACCEPTED(acrobot_default_cost(&params, &cost));
+    CHECK(cost.torque == .1f && cost.height == 2);
+    cost.below = cost.arrival = 0;
+    ACCEPTED(acrobot_planner_init(&planner, &params, 5, &cost, NULL));
+    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 0, &knot, 1, &number, NULL));
+    CHECK(near(number, .08f));
+    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 9, &knot, 1, &number, NULL));
+    CHECK(near(number, 0) && near(knot.torque, 0));
+
+    // After a plan, and without one, the regulator holds.
+    ACCEPTED(acrobot_lqr(&acrobot, &UPRIGHT, &WEIGHTS, 1, &x, NULL));
+    ACCEPTED(acrobot_planner_follow(&planner, &knot, 1, 1, &LEANING, &torque));
+    CHECK(near(torque, .01f * x.theta1));
+    ACCEPTED(acrobot_planner_decide(&planner, &LEANING, &number, NULL));
+    CHECK(number == torque);
+}
+
 int main(void)
 {
     an_acrobot();
     drawn_parameters();
     a_batch();
+    controllers();
     return report("values");
 }
