@@ -1,4 +1,4 @@
-"""Energy, linear models, regulators and simulations of the acrobot.
+"""Energy, linear models, regulators, simulations and plans of the acrobot.
 
 A state is the last axis: theta1, theta2 (rad) and their velocities (rad/s). Arrays broadcast in the
 axes before it. ``env`` is a single environment of this package, whose parameters count, or ``None``
@@ -8,6 +8,8 @@ for Gymnasium's.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs._native import compute
+from acrobot_rs import _native
 from acrobot_rs.arrays import must_be, numbers
 from acrobot_rs.env import AcrobotEnv
 
@@ -92,6 +94,80 @@ def simulate(state: ArrayLike, torques: ArrayLike, env: Env = None) -> Floats:
     return _call("simulate", (states, 4), env, state=state, torques=torques)
 
 
+@dataclass(frozen=True)
+class Plan:
+    """Steps of ``dt``, s. ``plan[10:]`` is the rest of a plan after ten steps."""
+
+    states: NDArray[np.float32]  #: before each step, (n, 4)
+    torques: NDArray[np.float32]  #: (n,), N m
+    gains: NDArray[np.float32]  #: (n, 4): what to add to a torque for deviations from the state
+    dt: float
+
+    def __getitem__(self, steps: slice) -> Plan:
+        return Plan(self.states[steps], self.torques[steps], self.gains[steps], self.dt)
+
+
+class Planner:
+    """Plans swing-ups, in ``float32``, for a motor of ``max_torque``, N m.
+
+    The keyword arguments are the weights of what a plan costs: ``angles`` and ``velocities``, two
+    numbers each, ``torque``, ``torque_change``, ``power``, ``below``, ``height``, ``margin`` and
+    ``arrival``. The documentation of Rust's ``Cost`` explains them.
+
+    No velocity of a plan reaches a bound of the environment. With ``clamps`` it may, as a brake.
+    """
+
+    def __init__(
+        self, max_torque: float, env: Env = None, *, clamps: bool = False, **weights: ArrayLike
+    ) -> None:
+        acrobot = _acrobot(env)
+        self._dt = acrobot.dt
+        self._native = _native.Planner(acrobot._native, max_torque, clamps, weights)
+
+    def plan(
+        self,
+        state: ArrayLike,
+        *,
+        steps: int,
+        tries: int = 1000,
+        seed: int = 0,
+        progress: Callable[[int], object] | None = None,
+    ) -> Plan:
+        """Search a plan of at most so many steps, after which the regulator holds upright.
+
+        The guesses are those of Rust's ``search``, and a seed gives the same plan everywhere. After
+        each 40 tries, ``progress`` is called with their number so far, and Ctrl-C acts.
+
+        Raises:
+            RuntimeError: No try found a plan.
+        """
+        return self._plan(self._native.plan(_numbers(state), steps, tries, seed, progress))
+
+    def improve(self, state: ArrayLike, plan: Plan, iterations: int = 150) -> tuple[Plan, float]:
+        """Plan again, from the state on, near a plan. Return the new plan, and what it costs."""
+        rows, cost = self._native.improve(_numbers(state), _rows(plan), iterations)
+        return self._plan(rows), cost
+
+    def follow(self, plan: Plan, step: int, state: ArrayLike) -> float:
+        """The torque at a step, N m, not limited: the plan's, and after it the regulator's."""
+        return self._native.follow(_rows(plan), step, _numbers(state))
+
+    def decide(self, state: ArrayLike) -> float:
+        """The torque without a plan, at most the largest: it pumps energy, and then holds."""
+        return self._native.decide(_numbers(state))
+
+    def _plan(self, rows: NDArray[np.float32]) -> Plan:
+        return Plan(rows[:, :4], rows[:, 4], rows[:, 5:], self._dt)
+
+
+def _rows(plan: Plan) -> NDArray[np.float32]:
+    return np.column_stack([plan.states, plan.torques, plan.gains]).astype(np.float32, copy=False)
+
+
+def _numbers(state: ArrayLike) -> list[float]:
+    return numbers("state", "four numbers", state, (4,)).tolist()
+
+
 class Animation:
     """An animated SVG of states, ``(n, 4)``, one each ``dt``, in real time. Notebooks show it."""
 
@@ -146,4 +222,4 @@ def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) 
     others = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
     rows = np.concatenate([np.broadcast_to(x, (*others, x.shape[-1])) for x in parts], axis=-1)
     rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]), np.float64)
-    return compute(function, _acrobot(env)._native, rows).reshape((*others, *shape))
+    return _native.compute(function, _acrobot(env)._native, rows).reshape((*others, *shape))
