@@ -109,7 +109,8 @@ def test_a_plan_has_the_bits_of_rust():
     env = acrobot_rs.AcrobotEnv(dt=0.02, FRICTION_1=0.1, MAX_VEL_1=4)
     planner = control.Planner(12, env, clamps=True, **weights, **others)
     plan = planner.plan([0.1, 0.2, 0.3, 0.4], steps=300, seed=5)
-    assert [crc32(each.tobytes()) for each in (plan.states, plan.torques, plan.gains)] == []
+    digests = [crc32(each.tobytes()) for each in (plan.states, plan.torques, plan.gains)]
+    assert digests == [382518841, 3712073996, 1712217085]  # of Rust's `search`
 
 
 def test_ctrl_c_ends_a_search():
