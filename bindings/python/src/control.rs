@@ -5,13 +5,12 @@ use acrobot::control::{self, ControlError, Cost, Knot, LinearModel, Lqr, NoPlan}
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, Portable, State};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyRuntimeError, PyTypeError};
+use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 use crate::single::{Acrobot, One};
-use crate::{Params, convert, rejected};
+use crate::{Params, rejected};
 
 /// Applies a function to each row of inputs. Returns the results of all rows.
 #[pyfunction]
@@ -79,11 +78,13 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, C
     })
 }
 
-/// The tries between two calls of `progress`: four of each of the ten lengths, so that the next
-/// ones go on with the first length, as in a search for all of them.
+/// The tries between two calls of `progress`: four of each of a search's ten lengths.
 const PORTION: u32 = 40;
 
-/// Plans swing-ups. A row of a plan is a knot: a state, a torque and four gains.
+/// A state, a torque and gains.
+type Row = [f32; 9];
+
+/// Plans swing-ups.
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Planner(control::Planner<Damped<Fast>>);
 
@@ -94,32 +95,25 @@ impl Planner {
         acrobot: PyRef<'_, Acrobot>,
         max_torque: f32,
         clamps: bool,
-        weights: &Bound<'_, PyDict>,
+        height: Option<f32>,
+        margin: Option<f32>,
+        weights: [f32; 9],
     ) -> PyResult<Self> {
         let params = acrobot.inner.acrobot.params().cast();
-        let mut cost = Cost::new(&params);
-        for (name, value) in weights {
-            let name = name.to_string();
-            let number = match name.as_str() {
-                "angles" => {
-                    cost.angles = convert(name, "two numbers", &value)?;
-                    continue;
-                }
-                "velocities" => {
-                    cost.velocities = convert(name, "two numbers", &value)?;
-                    continue;
-                }
-                "torque" => &mut cost.torque,
-                "torque_change" => &mut cost.torque_change,
-                "power" => &mut cost.power,
-                "below" => &mut cost.below,
-                "height" => &mut cost.height,
-                "margin" => &mut cost.margin,
-                "arrival" => &mut cost.arrival,
-                _ => return Err(PyTypeError::new_err(format!("a plan has no weight {name:?}"))),
-            };
-            *number = convert(&name, "a number", &value)?;
-        }
+        let Cost { height: reach, margin: tenth, .. } = Cost::new(&params);
+        let [angle1, angle2, velocity1, velocity2, torque, torque_change, power, below, arrival] =
+            weights;
+        let cost = Cost {
+            angles: [angle1, angle2],
+            velocities: [velocity1, velocity2],
+            torque,
+            torque_change,
+            power,
+            below,
+            height: height.unwrap_or(reach),
+            margin: margin.unwrap_or(tenth),
+            arrival,
+        };
         let planner = match clamps {
             true => control::Planner::for_simulation(params, max_torque, cost),
             false => control::Planner::with_cost(params, max_torque, cost),
@@ -127,21 +121,20 @@ impl Planner {
         planner.map(Self).map_err(rejected)
     }
 
-    fn plan<'py>(
-        slf: PyRef<'py, Self>,
+    fn plan(
+        &mut self,
+        py: Python<'_>,
         state: [f32; 4],
         steps: u16,
         tries: u32,
         seed: u64,
-        progress: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let (py, mut planner) = (slf.py(), slf.0.clone());
-        drop(slf); // other threads, and `progress`, may use it
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Vec<Row>> {
         let mut rng = Pcg64::new(seed);
         for done in (0..tries).step_by(PORTION as usize) {
             let portion = PORTION.min(tries - done);
-            match py.detach(|| planner.search(state.into(), portion, &mut rng, steps.into())) {
-                Ok(plan) => return rows(py, &plan),
+            match py.detach(|| self.0.search(state.into(), portion, &mut rng, steps.into())) {
+                Ok(plan) => return Ok(plan.iter().map(row).collect()),
                 Err(NoPlan::NotFound { .. }) => py.check_signals()?,
                 Err(error) => return Err(rejected(error)),
             }
@@ -152,26 +145,21 @@ impl Planner {
         Err(PyRuntimeError::new_err(NoPlan::NotFound { tries }.to_string()))
     }
 
-    fn improve<'py>(
-        slf: PyRef<'py, Self>,
+    fn improve(
+        &mut self,
+        py: Python<'_>,
         state: [f32; 4],
-        plan: PyReadonlyArray2<'py, f32>,
+        plan: Vec<Row>,
         iterations: u32,
-    ) -> PyResult<(Bound<'py, PyArray2<f32>>, f32)> {
-        let (py, mut planner, mut plan) = (slf.py(), slf.0.clone(), knots(&plan)?);
-        drop(slf);
-        let cost = py.detach(|| planner.improve(state.into(), iterations, &mut plan));
-        let cost = cost.map_err(rejected)?;
-        Ok((rows(py, &plan)?, cost))
+    ) -> PyResult<(Vec<Row>, f32)> {
+        let mut plan: Vec<_> = plan.into_iter().map(knot).collect();
+        let cost = py.detach(|| self.0.improve(state.into(), iterations, &mut plan));
+        Ok((plan.iter().map(row).collect(), cost.map_err(rejected)?))
     }
 
-    fn follow(
-        &self,
-        plan: PyReadonlyArray2<'_, f32>,
-        step: usize,
-        state: [f32; 4],
-    ) -> PyResult<f32> {
-        Ok(self.0.follow(&knots(&plan)?, step, state.into()))
+    /// The torque of a knot, or that after a plan.
+    fn follow(&self, plan: Option<Row>, state: [f32; 4]) -> f32 {
+        self.0.follow(plan.map(knot).as_slice(), 0, state.into())
     }
 
     fn decide(&mut self, state: [f32; 4]) -> PyResult<f32> {
@@ -179,19 +167,13 @@ impl Planner {
     }
 }
 
-fn knots(plan: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<Knot<f32>>> {
-    let (rows, _) = plan.as_slice()?.as_chunks();
-    let knot = |&[x1, x2, x3, x4, torque, k1, k2, k3, k4]: &[f32; 9]| {
-        let mut knot = Knot::open(torque);
-        (knot.state, knot.gain) = (State::from([x1, x2, x3, x4]), [k1, k2, k3, k4]);
-        knot
-    };
-    Ok(rows.iter().map(knot).collect())
+fn knot([x1, x2, x3, x4, torque, k1, k2, k3, k4]: Row) -> Knot<f32> {
+    let mut knot = Knot::open(torque);
+    (knot.state, knot.gain) = ([x1, x2, x3, x4].into(), [k1, k2, k3, k4]);
+    knot
 }
 
-fn rows<'py>(py: Python<'py>, plan: &[Knot<f32>]) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    let row =
-        |knot: &Knot<f32>| [&<[f32; 4]>::from(knot.state)[..], &[knot.torque], &knot.gain].concat();
-    let numbers = plan.iter().flat_map(row).collect();
-    PyArray1::from_vec(py, numbers).reshape([plan.len(), 9])
+fn row(&Knot { state, torque, gain: [k1, k2, k3, k4], .. }: &Knot<f32>) -> Row {
+    let [x1, x2, x3, x4] = state.into();
+    [x1, x2, x3, x4, torque, k1, k2, k3, k4]
 }

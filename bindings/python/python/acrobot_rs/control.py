@@ -96,11 +96,11 @@ def simulate(state: ArrayLike, torques: ArrayLike, env: Env = None) -> Floats:
 
 @dataclass(frozen=True)
 class Plan:
-    """Steps of ``dt``, s. ``plan[10:]`` is the rest of a plan after ten steps."""
+    """Steps of ``dt``, s. ``plan[10:]`` is the plan after ten steps."""
 
     states: NDArray[np.float32]  #: before each step, (n, 4)
     torques: NDArray[np.float32]  #: (n,), N m
-    gains: NDArray[np.float32]  #: (n, 4): what to add to a torque for deviations from the state
+    gains: NDArray[np.float32]  #: (n, 4): what deviations from the states add to the torques
     dt: float
 
     def __getitem__(self, steps: slice) -> Plan:
@@ -108,21 +108,33 @@ class Plan:
 
 
 class Planner:
-    """Plans swing-ups, in ``float32``, for a motor of ``max_torque``, N m.
+    """Plans swing-ups in ``float32``, for a motor of at most ``max_torque``, N m.
 
-    The keyword arguments are the weights of what a plan costs: ``angles`` and ``velocities``, two
-    numbers each, ``torque``, ``torque_change``, ``power``, ``below``, ``height``, ``margin`` and
-    ``arrival``. The documentation of Rust's ``Cost`` explains them.
-
-    No velocity of a plan reaches a bound of the environment. With ``clamps`` it may, as a brake.
+    ``angles`` to ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust. ``None``
+    is the height of the upright tip, or a tenth of it. No velocity of a plan reaches a bound of the
+    parameters, except with ``clamps``, where the environment is no machine and clamps it.
     """
 
     def __init__(
-        self, max_torque: float, env: Env = None, *, clamps: bool = False, **weights: ArrayLike
+        self,
+        max_torque: float,
+        env: Env = None,
+        *,
+        angles: tuple[float, float] = (0.0, 0.0),
+        velocities: tuple[float, float] = (0.0, 0.0),
+        torque: float = 0.1,
+        torque_change: float = 0.0,
+        power: float = 0.0,
+        below: float = 2.0,
+        height: float | None = None,
+        margin: float | None = None,
+        arrival: float = 20.0,
+        clamps: bool = False,
     ) -> None:
-        acrobot = _acrobot(env)
-        self._dt = acrobot.dt
-        self._native = _native.Planner(acrobot._native, max_torque, clamps, weights)
+        weights = [*angles, *velocities, torque, torque_change, power, below, arrival]
+        one = _acrobot(env)
+        self._native = _native.Planner(one._native, max_torque, clamps, height, margin, weights)
+        self._dt = one.dt
 
     def plan(
         self,
@@ -133,38 +145,37 @@ class Planner:
         seed: int = 0,
         progress: Callable[[int], object] | None = None,
     ) -> Plan:
-        """Search a plan of at most so many steps, after which the regulator holds upright.
+        """A plan of at most so many steps, after which the regulator holds upright.
 
-        The guesses are those of Rust's ``search``, and a seed gives the same plan everywhere. After
-        each 40 tries, ``progress`` is called with their number so far, and Ctrl-C acts.
-
-        Raises:
-            RuntimeError: No try found a plan.
+        A seed gives the same plan everywhere. After each 40 tries, which are one ``search`` of
+        Rust's, ``progress`` is called with the number of all so far, and Ctrl-C acts. A
+        ``RuntimeError`` says that no try found a plan.
         """
-        return self._plan(self._native.plan(_numbers(state), steps, tries, seed, progress))
+        return self._plan(self._native.plan(_four(state), steps, tries, seed, progress))
 
     def improve(self, state: ArrayLike, plan: Plan, iterations: int = 150) -> tuple[Plan, float]:
-        """Plan again, from the state on, near a plan. Return the new plan, and what it costs."""
-        rows, cost = self._native.improve(_numbers(state), _rows(plan), iterations)
+        """The best plan from a state near a plan, and what it costs."""
+        rows = np.column_stack([plan.states, plan.torques, plan.gains]).tolist()
+        rows, cost = self._native.improve(_four(state), rows, iterations)
         return self._plan(rows), cost
 
     def follow(self, plan: Plan, step: int, state: ArrayLike) -> float:
-        """The torque at a step, N m, not limited: the plan's, and after it the regulator's."""
-        return self._native.follow(_rows(plan), step, _numbers(state))
+        """The torque at a step, N m, not limited: the plan's, or after it the regulator's."""
+        knot = None
+        if step < len(plan.torques):
+            knot = [*plan.states[step], plan.torques[step], *plan.gains[step]]
+        return self._native.follow(knot, _four(state))
 
     def decide(self, state: ArrayLike) -> float:
-        """The torque without a plan, at most the largest: it pumps energy, and then holds."""
-        return self._native.decide(_numbers(state))
+        """The torque without a plan, N m: it pumps energy, and then holds."""
+        return self._native.decide(_four(state))
 
-    def _plan(self, rows: NDArray[np.float32]) -> Plan:
-        return Plan(rows[:, :4], rows[:, 4], rows[:, 5:], self._dt)
-
-
-def _rows(plan: Plan) -> NDArray[np.float32]:
-    return np.column_stack([plan.states, plan.torques, plan.gains]).astype(np.float32, copy=False)
+    def _plan(self, rows: list[list[float]]) -> Plan:
+        array = np.array(rows, np.float32).reshape(-1, 9)
+        return Plan(array[:, :4], array[:, 4], array[:, 5:], self._dt)
 
 
-def _numbers(state: ArrayLike) -> list[float]:
+def _four(state: ArrayLike) -> list[float]:
     return numbers("state", "four numbers", state, (4,)).tolist()
 
 
