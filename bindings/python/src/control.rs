@@ -97,15 +97,16 @@ impl Planner {
         clamps: bool,
         height: Option<f32>,
         margin: Option<f32>,
-        weights: [f32; 9],
+        pairs: [[f32; 2]; 2],
+        weights: [f32; 5],
     ) -> PyResult<Self> {
         let params = acrobot.inner.acrobot.params().cast();
         let Cost { height: reach, margin: tenth, .. } = Cost::new(&params);
-        let [angle1, angle2, velocity1, velocity2, torque, torque_change, power, below, arrival] =
-            weights;
+        let [angles, velocities] = pairs;
+        let [torque, torque_change, power, below, arrival] = weights;
         let cost = Cost {
-            angles: [angle1, angle2],
-            velocities: [velocity1, velocity2],
+            angles,
+            velocities,
             torque,
             torque_change,
             power,

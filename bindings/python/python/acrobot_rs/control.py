@@ -110,9 +110,9 @@ class Plan:
 class Planner:
     """Plans swing-ups in ``float32``, for a motor of at most ``max_torque``, N m.
 
-    ``angles`` to ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust. ``None``
-    is the height of the upright tip, or a tenth of it. No velocity of a plan reaches a bound of the
-    parameters, except with ``clamps``, where the environment is no machine and clamps it.
+    ``angles`` to ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust. ``height``
+    is by default that of the upright tip, and ``margin`` a tenth of it. No velocity of a plan
+    reaches a bound of the parameters. With ``clamps`` it may: environments clamp it there.
     """
 
     def __init__(
@@ -131,10 +131,12 @@ class Planner:
         arrival: float = 20.0,
         clamps: bool = False,
     ) -> None:
-        weights = [*angles, *velocities, torque, torque_change, power, below, arrival]
-        one = _acrobot(env)
-        self._native = _native.Planner(one._native, max_torque, clamps, height, margin, weights)
-        self._dt = one.dt
+        acrobot = _acrobot(env)
+        pairs, weights = [angles, velocities], [torque, torque_change, power, below, arrival]
+        self._native = _native.Planner(
+            acrobot._native, max_torque, clamps, height, margin, pairs, weights
+        )
+        self._dt = acrobot.dt
 
     def plan(
         self,
@@ -154,7 +156,7 @@ class Planner:
         return self._plan(self._native.plan(_four(state), steps, tries, seed, progress))
 
     def improve(self, state: ArrayLike, plan: Plan, iterations: int = 150) -> tuple[Plan, float]:
-        """The best plan from a state near a plan, and what it costs."""
+        """Improve a plan, from a state on. Return the new one, and what it costs."""
         rows = np.column_stack([plan.states, plan.torques, plan.gains]).tolist()
         rows, cost = self._native.improve(_four(state), rows, iterations)
         return self._plan(rows), cost
