@@ -1,10 +1,12 @@
-//! The functions of `acrobot_rs.control`, each for many states at once.
+//! What `acrobot_rs.control` computes: functions, each for many states at once, and plans.
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{self, ControlError, LinearModel, Lqr};
+use acrobot::control::{self, ControlError, Cost, Knot, LinearModel, Lqr, NoPlan};
+use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
-use acrobot::{Portable, State};
+use acrobot::{Fast, Portable, State};
 use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::single::{Acrobot, One};
@@ -74,4 +76,105 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, C
         }
         _ => Vec::new(),
     })
+}
+
+/// The tries between two calls of `progress`: four of each of a search's ten lengths.
+const PORTION: u32 = 40;
+
+/// A state, a torque and gains.
+type Row = [f32; 9];
+
+/// Plans swing-ups.
+#[pyclass(module = "acrobot_rs._native")]
+pub struct Planner(control::Planner<Damped<Fast>>);
+
+#[pymethods]
+impl Planner {
+    #[new]
+    fn new(
+        acrobot: PyRef<'_, Acrobot>,
+        max_torque: f32,
+        clamps: bool,
+        height: Option<f32>,
+        margin: Option<f32>,
+        pairs: [[f32; 2]; 2],
+        weights: [f32; 5],
+    ) -> PyResult<Self> {
+        let params = acrobot.inner.acrobot.params().cast();
+        let Cost { height: reach, margin: tenth, .. } = Cost::new(&params);
+        let [angles, velocities] = pairs;
+        let [torque, torque_change, power, below, arrival] = weights;
+        let cost = Cost {
+            angles,
+            velocities,
+            torque,
+            torque_change,
+            power,
+            below,
+            height: height.unwrap_or(reach),
+            margin: margin.unwrap_or(tenth),
+            arrival,
+        };
+        let planner = match clamps {
+            true => control::Planner::for_simulation(params, max_torque, cost),
+            false => control::Planner::with_cost(params, max_torque, cost),
+        };
+        planner.map(Self).map_err(rejected)
+    }
+
+    fn plan(
+        &mut self,
+        py: Python<'_>,
+        state: [f32; 4],
+        steps: u16,
+        tries: u32,
+        seed: u64,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Vec<Row>> {
+        let mut rng = Pcg64::new(seed);
+        for done in (0..tries).step_by(PORTION as usize) {
+            let portion = PORTION.min(tries - done);
+            match py.detach(|| self.0.search(state.into(), portion, &mut rng, steps.into())) {
+                Ok(plan) => return Ok(plan.iter().map(row).collect()),
+                Err(NoPlan::NotFound { .. }) => py.check_signals()?,
+                Err(error) => return Err(rejected(error)),
+            }
+            if let Some(progress) = &progress {
+                progress.call1((done + portion,))?;
+            }
+        }
+        Err(PyRuntimeError::new_err(NoPlan::NotFound { tries }.to_string()))
+    }
+
+    fn improve(
+        &mut self,
+        py: Python<'_>,
+        state: [f32; 4],
+        plan: Vec<Row>,
+        iterations: u32,
+    ) -> PyResult<(Vec<Row>, f32)> {
+        let mut plan: Vec<_> = plan.into_iter().map(knot).collect();
+        let cost = py.detach(|| self.0.improve(state.into(), iterations, &mut plan));
+        Ok((plan.iter().map(row).collect(), cost.map_err(rejected)?))
+    }
+
+    /// The torque of a knot, or that after a plan.
+    fn follow(&self, plan: Option<Row>, state: [f32; 4]) -> f32 {
+        self.0.follow(plan.map(knot).as_slice(), 0, state.into())
+    }
+
+    fn decide(&mut self, state: [f32; 4]) -> PyResult<f32> {
+        self.0.decide(state.into()).map_err(rejected)
+    }
+}
+
+fn knot([x1, x2, x3, x4, torque, k1, k2, k3, k4]: Row) -> Knot<f32> {
+    let mut knot = Knot::open(torque);
+    (knot.state, knot.gain) = ([x1, x2, x3, x4].into(), [k1, k2, k3, k4]);
+    knot
+}
+
+fn row(&Knot { state, torque, gain: [k1, k2, k3, k4], .. }: &Knot<f32>) -> Row {
+    let [x1, x2, x3, x4] = state.into();
+    [x1, x2, x3, x4, torque, k1, k2, k3, k4]
 }

@@ -43,7 +43,7 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::control::compute;
+    use super::control::{Planner, compute};
     #[pymodule_export]
     use super::single::Acrobot;
     use super::*;

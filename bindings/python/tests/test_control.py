@@ -1,5 +1,8 @@
 """`acrobot_rs.control` has the bits of environments, and agrees with other people's programs."""
 
+import signal
+from zlib import crc32
+
 import acrobot_rs
 import control as python_control
 import gymnasium
@@ -78,11 +81,47 @@ def test_motions_obey_mechanics():
         ("energy", ([0.0] * 3,), r"state must be .* shape \(\.\.\., 4\), got \(3,\)"),
         ("simulate", ([0.0] * 4, [np.inf]), "torque must be a finite number of N m, got inf"),
         ("regulator", (ONE, 1, [1, 0, 0, 0]), "the state must be in equilibrium"),
+        ("Planner", (0,), "the largest torque must be finite and above 0 N m, got 0"),
     ],
 )
 def test_errors_say_what_is_valid(function, arguments, message):
     with pytest.raises(ValueError, match=message):
         getattr(control, function)(*arguments)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_a_plan_swings_an_environment_up_from_a_nearby_state(friction):
+    env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, FRICTION_1=friction, AVAIL_TORQUE=(-8, 0, 8))
+    planner = control.Planner(6.0, env)
+    plan = planner.plan([0, 0, 0, 0], steps=400)
+    env.reset(options={"state": [0.05, -0.05, 0.1, 0.1]})
+    for step in range(len(plan.torques) + 500):
+        env.step([planner.follow(plan, step, env.state)])
+    assert np.abs(control.difference(env.state)).max() < 0.01
+    near = [np.pi - 0.001, 0.0, 0.0, 0.0]
+    assert planner.decide(near) == planner.follow(plan, step, near)
+    rest = plan[50:]
+    costs = [planner.improve(rest.states[0] + 0.01, rest, n)[1] for n in (0, 1, 5)]
+    assert costs[0] > costs[1] > costs[2]
+
+
+def test_a_plan_has_the_bits_of_rust():
+    env = acrobot_rs.AcrobotEnv(dt=0.02, FRICTION_1=0.1, MAX_VEL_1=4)
+    weights = {"torque": 0.2, "torque_change": 0.1, "power": 0.3, "below": 3, "height": 1.9}
+    weights |= {"margin": 0.3, "arrival": 10, "angles": (0.1, 0.2), "velocities": (0.01, 0.02)}
+    planner = control.Planner(12, env, clamps=True, **weights)
+    plan = planner.plan([0.1, 0.2, 0.3, 0.4], steps=300, seed=5)
+    digests = [crc32(each.tobytes()) for each in (plan.states, plan.torques, plan.gains)]
+    assert digests == [382518841, 3712073996, 1712217085]  # of Rust's `search`
+
+
+def test_a_search_can_be_interrupted_or_find_no_plan():
+    planner, calls = control.Planner(1e-3), []
+    with pytest.raises(RuntimeError, match="found no plan that ends upright in 41 tries"):
+        planner.plan([0, 0, 0, 0], steps=50, tries=41, progress=calls.append)
+    assert calls == [40, 41]
+    with pytest.raises(KeyboardInterrupt):
+        planner.plan([0, 0, 0, 0], steps=50, progress=lambda _: signal.raise_signal(signal.SIGINT))
 
 
 @pytest.mark.parametrize("dt, frames", [(0.01, 76), (0.2, 16)])

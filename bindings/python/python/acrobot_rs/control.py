@@ -1,4 +1,4 @@
-"""Energy, linear models, regulators and simulations of the acrobot.
+"""Energy, linear models, regulators, simulations and plans of the acrobot.
 
 A state is the last axis: theta1, theta2 (rad) and their velocities (rad/s). Arrays broadcast in the
 axes before it. ``env`` is a single environment of this package, whose parameters count, or ``None``
@@ -8,6 +8,8 @@ for Gymnasium's.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs._native import compute
+from acrobot_rs import _native
 from acrobot_rs.arrays import must_be, numbers
 from acrobot_rs.env import AcrobotEnv
 
@@ -92,6 +94,93 @@ def simulate(state: ArrayLike, torques: ArrayLike, env: Env = None) -> Floats:
     return _call("simulate", (states, 4), env, state=state, torques=torques)
 
 
+@dataclass(frozen=True)
+class Plan:
+    """Steps of ``dt``, s. ``plan[10:]`` is the plan after ten steps."""
+
+    states: NDArray[np.float32]  #: before each step, (n, 4)
+    torques: NDArray[np.float32]  #: (n,), N m
+    gains: NDArray[np.float32]  #: (n, 4): what deviations from the states add to the torques
+    dt: float
+
+    def __getitem__(self, steps: slice) -> Plan:
+        return Plan(self.states[steps], self.torques[steps], self.gains[steps], self.dt)
+
+
+class Planner:
+    """Plans swing-ups in ``float32``, for a motor of at most ``max_torque``, N m.
+
+    ``angles`` to ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust. ``height``
+    is by default that of the upright tip, and ``margin`` a tenth of it. No velocity of a plan
+    reaches a bound of the parameters. With ``clamps`` it may: environments clamp it there.
+    """
+
+    def __init__(
+        self,
+        max_torque: float,
+        env: Env = None,
+        *,
+        angles: tuple[float, float] = (0.0, 0.0),
+        velocities: tuple[float, float] = (0.0, 0.0),
+        torque: float = 0.1,
+        torque_change: float = 0.0,
+        power: float = 0.0,
+        below: float = 2.0,
+        height: float | None = None,
+        margin: float | None = None,
+        arrival: float = 20.0,
+        clamps: bool = False,
+    ) -> None:
+        acrobot = _acrobot(env)
+        pairs, weights = [angles, velocities], [torque, torque_change, power, below, arrival]
+        self._native = _native.Planner(
+            acrobot._native, max_torque, clamps, height, margin, pairs, weights
+        )
+        self._dt = acrobot.dt
+
+    def plan(
+        self,
+        state: ArrayLike,
+        *,
+        steps: int,
+        tries: int = 1000,
+        seed: int = 0,
+        progress: Callable[[int], object] | None = None,
+    ) -> Plan:
+        """A plan of at most so many steps, after which the regulator holds upright.
+
+        A seed gives the same plan everywhere. After each 40 tries, which are one ``search`` of
+        Rust's, ``progress`` is called with the number of all so far, and Ctrl-C acts. A
+        ``RuntimeError`` says that no try found a plan.
+        """
+        return self._plan(self._native.plan(_four(state), steps, tries, seed, progress))
+
+    def improve(self, state: ArrayLike, plan: Plan, iterations: int = 150) -> tuple[Plan, float]:
+        """Improve a plan, from a state on. Return the new one, and what it costs."""
+        rows = np.column_stack([plan.states, plan.torques, plan.gains]).tolist()
+        rows, cost = self._native.improve(_four(state), rows, iterations)
+        return self._plan(rows), cost
+
+    def follow(self, plan: Plan, step: int, state: ArrayLike) -> float:
+        """The torque at a step, N m, not limited: the plan's, or after it the regulator's."""
+        knot = None
+        if step < len(plan.torques):
+            knot = [*plan.states[step], plan.torques[step], *plan.gains[step]]
+        return self._native.follow(knot, _four(state))
+
+    def decide(self, state: ArrayLike) -> float:
+        """The torque without a plan, N m: it pumps energy, and then holds."""
+        return self._native.decide(_four(state))
+
+    def _plan(self, rows: list[list[float]]) -> Plan:
+        array = np.array(rows, np.float32).reshape(-1, 9)
+        return Plan(array[:, :4], array[:, 4], array[:, 5:], self._dt)
+
+
+def _four(state: ArrayLike) -> list[float]:
+    return numbers("state", "four numbers", state, (4,)).tolist()
+
+
 class Animation:
     """An animated SVG of states, ``(n, 4)``, one each ``dt``, in real time. Notebooks show it."""
 
@@ -146,4 +235,4 @@ def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) 
     others = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
     rows = np.concatenate([np.broadcast_to(x, (*others, x.shape[-1])) for x in parts], axis=-1)
     rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]), np.float64)
-    return compute(function, _acrobot(env)._native, rows).reshape((*others, *shape))
+    return _native.compute(function, _acrobot(env)._native, rows).reshape((*others, *shape))
