@@ -17,8 +17,8 @@ pub struct LinearModel<S = f64> {
     pub b: [S; 4],
 }
 
-/// Linearizes the equations of motion about the pendulum's state and a torque, N m: A and B of ẋ = A
-/// x + B u, in 1/s, and exact up to rounding.
+/// Linearizes the equations of motion about the pendulum's state and a torque, N m: A and B of
+/// ẋ = A x + B u, exact up to rounding.
 ///
 /// The state need not be an equilibrium. Bounds of the velocities do not count.
 ///

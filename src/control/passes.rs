@@ -127,8 +127,8 @@ pub(super) struct Backward<'a, A: Arithmetic, V> {
 }
 
 /// What the rest of a plan costs, about a knot: the slopes by the state before the knot, the upper
-/// triangle of the curvatures by rows, the curvatures by a state and the torque before the knot, and
-/// the slope and the curvature by that torque.
+/// triangle of the curvatures by rows, the curvatures by a state and the torque before the knot,
+/// and the slope and the curvature by that torque.
 type ToGo<V> = [V; 20];
 
 impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Backward<'_, A, V> {
@@ -192,6 +192,7 @@ struct Jump<S> {
 
 /// The new change and gains of a knot, what the rest of the plan costs from this knot on, and the
 /// divisor.
+#[expect(clippy::indexing_slicing, reason = "the indices are 0 to 3")]
 #[inline(always)]
 fn look_back<A: Arithmetic, const IN_LANES: bool>(
     Local { model, limit, weights }: &Local<A::Scalar>,

@@ -146,6 +146,7 @@ pub(super) fn is_below<S: Real>(state: State<S>, [bound1, bound2]: [S; 2]) -> bo
 }
 
 /// U with P = Uᵀ U for a symmetric, positive definite P.
+#[expect(clippy::indexing_slicing, reason = "the indices are 0 to 3")]
 fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
     [0, 1, 2, 3].map(|i: usize| {
         let i = i % 4; // without it, a Cortex-M0 checks bounds
@@ -159,6 +160,7 @@ fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
 }
 
 /// The largest k x where |U x| ≤ 1: |y| for Uᵀ y = k.
+#[expect(clippy::indexing_slicing, reason = "the indices are 0 to 3")]
 fn largest(u: &[[f64; 4]; 4], mut k: [f64; 4]) -> f64 {
     let y = [0, 1, 2, 3].map(|i| {
         let y = k[i] / u[i][i];

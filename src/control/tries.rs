@@ -94,11 +94,11 @@ pub(super) fn improve<A: Arithmetic, V: Lanewise<A::Scalar>>(
     loop {
         let mut active = 0;
         for (i, plan) in tries.iter_mut().enumerate() {
-            if plan.phase == Phase::Idle {
-                if let Some(len) = plans.next(knots, i) {
-                    orders.len.set_lane(i, number(len as f64));
-                    *plan = Try { phase: Phase::Keeps, ..new };
-                }
+            if plan.phase == Phase::Idle
+                && let Some(len) = plans.next(knots, i)
+            {
+                orders.len.set_lane(i, number(len as f64));
+                *plan = Try { phase: Phase::Keeps, ..new };
             }
             active += usize::from(plan.phase != Phase::Idle);
             orders.part.set_lane(i, plan.part);

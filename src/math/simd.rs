@@ -19,8 +19,8 @@ pub enum SimdLevel {
 
 /// A loop over lanes.
 pub(crate) trait Kernel {
-    /// Must be `#[inline(always)]`, and so must be what it calls: a function out of line may not use
-    /// the SIMD instructions of its caller.
+    /// Must be `#[inline(always)]`, and so must be what it calls: a function out of line may not
+    /// use the SIMD instructions of its caller.
     fn run<const AVX512: bool>(self);
 }
 

@@ -59,8 +59,8 @@ pub struct Params<S = f64> {
     pub gravity: S,
     /// Duration of one step, s; above 0.
     pub dt: S,
-    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity is none, stored as 3.4e38, the
-    /// largest `f32`, because observations are `f32`.
+    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity is none, stored as 3.4e38,
+    /// the largest `f32`, because observations are `f32`.
     pub max_velocity1: S,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,

@@ -101,10 +101,13 @@ fn empty<S: Real>() -> Knot<Side<S>> {
     Knot { state, torque: zero, gain: [zero; 4], change: zero, smooth: zero }
 }
 
+/// Fills a plan; false if the numbers overflow.
+type Guess<'a, S> = dyn FnMut(&mut [Knot<S>]) -> bool + 'a;
+
 /// Tries until one succeeds.
 struct Search<'a, A: Arithmetic> {
     planner: &'a Planner<A>,
-    guess: &'a mut dyn FnMut(&mut [Knot<A::Scalar>]) -> bool,
+    guess: &'a mut Guess<'a, A::Scalar>,
     left: u32,
     tries: usize,
     steps: usize,

@@ -13,7 +13,10 @@ use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
-use acrobot::control::{Cost, Knot, Planner, difference, inverse_dynamics, linearize, linearize_step, lqr, regulator, velocities};
+use acrobot::control::{
+    Cost, Knot, Planner, difference, inverse_dynamics, linearize, linearize_step, lqr, regulator,
+    velocities,
+};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};

@@ -49,8 +49,9 @@ fn main() -> anyhow::Result<()> {
     }
     let svg = format!(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 560 250' font-family='sans-serif' \
-         font-size='12'>\n<path d='M40 10V130M40 150V230M40 10H440M40 70H440M40 190H440M40 230H440' \
-         stroke='#ccc'/>\n<text x='4' y='14'>2 m</text><text x='4' y='134'>-2 m</text>\
+         font-size='12'>\n<path stroke='#ccc' \
+         d='M40 10V130M40 150V230M40 10H440M40 70H440M40 190H440M40 230H440'/>\n\
+         <text x='4' y='14'>2 m</text><text x='4' y='134'>-2 m</text>\
          <text x='4' y='164'>5 N m</text><text x='4' y='230'>-5 N m</text>\
          <text x='40' y='246'>0 s</text><text x='425' y='246'>8 s</text>\n{drawn}</svg>\n"
     );
