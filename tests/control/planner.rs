@@ -223,11 +223,12 @@ fn no_velocity_of_a_plan_reaches_its_bound() -> Result<(), Box<dyn Error>> {
 /// Each weight lowers what it weights.
 #[test]
 fn a_weight_lowers_what_it_weights() -> Result<(), Box<dyn Error>> {
+    type Term = fn(&[Knot<f64>]) -> f64;
     let params = Params { dt: 0.02, ..Params::DEFAULT };
     let plain = Cost::new(&params);
     let mut guess = [Knot::EMPTY; 200];
     Planner::<Portable>::new(params, 6.0)?.guess(State::HANGING, &mut Pcg64::new(3), &mut guess)?;
-    let sum = |cost, term: fn(&[Knot<f64>]) -> f64| {
+    let sum = |cost, term: Term| {
         let mut plan = guess;
         Planner::<Portable>::with_cost(params, 6.0, cost)?.improve(
             State::HANGING,
@@ -236,7 +237,7 @@ fn a_weight_lowers_what_it_weights() -> Result<(), Box<dyn Error>> {
         )?;
         Ok::<_, Box<dyn Error>>(term(&plan))
     };
-    let cases: [(Cost, fn(&[Knot<f64>]) -> f64); 7] = [
+    let cases: [(Cost, Term); 7] = [
         (Cost { torque: 1.0, ..plain }, |plan| plan.iter().map(|k| k.torque.powi(2)).sum()),
         (Cost { torque_change: 1.0, ..plain }, |plan| {
             plan.windows(2).map(|k| (k[1].torque - k[0].torque).powi(2)).sum()
@@ -251,10 +252,10 @@ fn a_weight_lowers_what_it_weights() -> Result<(), Box<dyn Error>> {
             plan.iter().map(|k| k.state.dtheta2.powi(2)).sum()
         }),
         (Cost { angles: [20.0, 0.0], ..plain }, |plan| {
-            plan.iter().map(|k| 2.0 + 2.0 * k.state.theta1.cos()).sum()
+            plan.iter().map(|k| 2.0 + 2.0 * libm::cos(k.state.theta1)).sum()
         }),
         (Cost { angles: [0.0, 20.0], ..plain }, |plan| {
-            plan.iter().map(|k| 2.0 - 2.0 * k.state.theta2.cos()).sum()
+            plan.iter().map(|k| 2.0 - 2.0 * libm::cos(k.state.theta2)).sum()
         }),
     ];
     for (i, (cost, term)) in cases.into_iter().enumerate() {
