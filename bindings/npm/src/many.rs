@@ -11,9 +11,9 @@ use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup};
 use acrobot::{Error, Fast, Params, ResetOptions};
 use serde::Serialize;
 
-use crate::memory::{self, set_numbers, zeros};
 use crate::snapshot::{self, Reader, Rejected, read};
 use crate::{Tasks, with_task};
+use memory::{set_numbers, zeros};
 
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;

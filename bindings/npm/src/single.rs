@@ -9,9 +9,9 @@ use acrobot::task::{Draws, Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Step};
 use serde::Serialize;
 
-use crate::memory::{self, set_numbers};
 use crate::snapshot::{self, Reader, Rejected, read};
 use crate::{Tasks, with_task};
+use memory::set_numbers;
 
 type AnyTask = Tasks<Acrobot<Fast>, Acrobot<Damped<Fast>, Swingup>>;
 

@@ -1,4 +1,4 @@
-//! What the exported functions share: memory for acrobots, and words to exchange values.
+//! What the modules share: memory for what JavaScript keeps, and words to exchange values.
 
 use std::alloc::{Layout, alloc, alloc_zeroed};
 use std::cell::Cell;
@@ -7,6 +7,16 @@ use acrobot::numpy::SeedSequence;
 use acrobot::physics::Dynamics;
 use acrobot::task::{Draw, Draws};
 use acrobot::{Error, Params, State};
+use lol_alloc::{AssumeSingleThreaded, FreeListAllocator};
+
+#[cfg(target_feature = "atomics")]
+compile_error!("the allocator needs a module with one thread");
+
+/// std's allocator would add 5 KB.
+// SAFETY: a module without atomics has one thread.
+#[global_allocator]
+static ALLOCATOR: AssumeSingleThreaded<FreeListAllocator> =
+    unsafe { AssumeSingleThreaded::new(FreeListAllocator::new()) };
 
 /// Moves a value to the heap, or returns `None` if there is no memory. `Box::new` would panic.
 pub fn keep<T>(value: T) -> Option<Box<T>> {
@@ -51,7 +61,7 @@ pub extern "C" fn words() -> *const u32 {
     WORDS.with(Cell::as_ptr).cast()
 }
 
-fn numbers() -> [f32; LEN] {
+pub fn numbers() -> [f32; LEN] {
     WORDS.get().map(f32::from_bits)
 }
 
