@@ -14,7 +14,7 @@ use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, State};
 use memory::{changed, keep, seed, set, set_numbers, text, zeros};
 
-/// The words of the weights, which follow the parameters or a linear model.
+/// The first words of weights: those of a cost follow the parameters, those of a regulator a model.
 const COST: usize = 19;
 const WEIGHTS: usize = 20;
 
@@ -43,10 +43,9 @@ fn write<const N: usize>(result: Result<[f32; N], ControlError>) -> u32 {
         Err(ControlError::NotSemidefinite { name, value }) => (6, name, [value, 0.0]),
         Err(ControlError::NotInEquilibrium { rate }) => (7, "", [rate, 0.0]),
         Err(ControlError::NotStabilizable) => (8, "", [0.0; 2]),
-        Err(ControlError::NotDetectable) => (9, "", [0.0; 2]),
         Err(ControlError::IllConditioned { error }) => (10, "", [error, 0.0]),
-        // The crate has no other error.
-        Err(_) => (11, "", [0.0; 2]),
+        // `NotDetectable`: the crate has no other error.
+        Err(_) => (9, "", [0.0; 2]),
     };
     let [address, len] = text(name);
     let [value, other] = values.map(|value| (value as f32).to_bits());
@@ -193,7 +192,7 @@ pub extern "C" fn planner_rows(planner: &mut Planner, steps: usize) -> usize {
     planner.rows.as_ptr().addr()
 }
 
-/// Plans with a seed of so many words. Writes the length of the plan, or returns 12 if it finds
+/// Plans with a seed of so many words. Writes the length of the plan, or returns 11 if it finds
 /// none.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_plan(
@@ -213,7 +212,7 @@ pub extern "C" fn planner_plan(
             0
         }
         Err(NoPlan::Invalid(error)) => write::<0>(Err(error)),
-        Err(NoPlan::NotFound { .. }) => 12,
+        Err(NoPlan::NotFound { .. }) => 11,
     }
 }
 

@@ -1,0 +1,168 @@
+// Control has native bits, and rejects invalid arguments with Rust's messages.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+
+import { Planner, linearize, linearizeStep, lqr, regulator } from "../dist/control.js";
+import { Acrobot } from "../dist/index.js";
+import { assertRejected } from "./module.mjs";
+
+const state = (theta1, theta2 = 0, dtheta1 = 0, dtheta2 = 0) =>
+  ({ theta1, theta2, dtheta1, dtheta2 });
+const HANGING = state(0);
+const UPRIGHT = state(Math.PI);
+const EYE = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
+const PARAMS = { dt: 0.01 };
+const planned = () => {
+  const planner = new Planner(PARAMS, 7);
+  return [planner, planner.plan(HANGING, { steps: 1100, seed: 4 })];
+};
+const knot = ({ states, gains }, i) =>
+  [states, gains].map((rows) => [...rows.slice(4 * i, 4 * i + 4)]);
+
+test("a plan, and an acrobot that follows it, are bit-identical to native ones", () => {
+  const source = readFileSync(new URL("../../../tests/bits/src/plan.rs", import.meta.url), "utf8");
+  const recorded = BigInt(/PLAN: u64 = (\w+);/.exec(source)[1].replaceAll("_", ""));
+  const [planner, plan] = planned();
+  const acrobot = new Acrobot({ params: PARAMS });
+  acrobot.state = HANGING;
+  let digest = 0xcbf2_9ce4_8422_2325n;
+  const add = (word) => {
+    digest = BigInt.asUintN(64, (digest ^ BigInt(word)) * 0x100_0000_01b3n);
+  };
+  add(1);
+  plan.torques.forEach((torque, i) => {
+    const followed = planner.follow(plan, i, acrobot.state);
+    acrobot.stepTorque(Math.max(-10, Math.min(10, followed)));
+    add(1);
+    const [state, gain] = knot(plan, i);
+    const numbers = [state, Object.values(acrobot.state), gain, new Array(4).fill(torque)].flat();
+    for (const word of new Uint32Array(Float32Array.from(numbers).buffer)) add(word);
+  });
+  assert.equal(digest, recorded);
+  // After the plan the regulator holds.
+  for (let i = 0; i < 500; i++) {
+    acrobot.stepTorque(planner.follow(plan, plan.torques.length, acrobot.state));
+  }
+  assert.ok(acrobot.tipHeight > 1.999);
+});
+
+test("a plan is improved in place for other weights and another start", () => {
+  const [planner, plan] = planned();
+  const before = { ...plan, torques: plan.torques.slice() };
+  const jumps = ({ torques }) =>
+    torques.slice(1).reduce((sum, torque, i) => sum + (torque - torques[i]) ** 2, 0);
+  const smooth = new Planner(PARAMS, 7, { torqueChange: 1, angles: [0.1, 0] });
+  const start = state(0.05);
+  const costs = [1, 30, 30].map((iterations) => smooth.improve(start, iterations, plan));
+  assert.ok(costs[0] > costs[1] && costs[1] >= costs[2], costs.join());
+  assert.ok(jumps(plan) < jumps(before) / 2);
+  assert.equal(plan.states[0], Math.fround(0.05));
+  assert.ok(planner.improve(start, 1, plan) !== costs[2]);
+});
+
+test("without a plan, the torque pumps energy and then holds", () => {
+  const planner = new Planner(PARAMS, 7);
+  const acrobot = new Acrobot({ seed: 42, params: PARAMS });
+  for (let i = 0; i < 6000; i++) {
+    const torque = planner.decide(acrobot.state);
+    assert.ok(Math.abs(torque) <= 7);
+    acrobot.stepTorque(torque);
+  }
+  assert.ok(acrobot.tipHeight > 1.999);
+  assert.equal(planner.plan(HANGING, { steps: 10, tries: 3 }), null);
+});
+
+test("a regulator holds the acrobots of both tasks", () => {
+  for (const task of ["acrobot", "swingup"]) {
+    const acrobot = new Acrobot({ task, params: { dt: 0.02 } });
+    acrobot.setParams({ mass2: 1.5 });
+    const { gain, costToGo } = regulator(acrobot.params, EYE, 1);
+    acrobot.state = state(Math.PI - 0.02, 0.02);
+    for (let i = 0; i < 1000; i++) {
+      const { theta1, theta2, dtheta1, dtheta2 } = acrobot.state;
+      const x = [theta1 - Math.sign(theta1) * Math.PI, theta2, dtheta1, dtheta2];
+      acrobot.stepTorque(-x.reduce((sum, each, j) => sum + each * gain[j], 0));
+    }
+    assert.ok(acrobot.tipHeight > 1.9999);
+    const own = lqr(linearizeStep(UPRIGHT, 0, acrobot.params), EYE, 1);
+    assert.deepEqual(own, { gain, costToGo });
+    assert.deepEqual(costToGo[1][2], costToGo[2][1]);
+  }
+  // Hanging, the acrobot needs less.
+  const [up, down] = [UPRIGHT, HANGING].map((each) => regulator(PARAMS, EYE, 1, each).gain);
+  assert.ok(Math.abs(up[0]) > 10 * Math.abs(down[0]));
+});
+
+test("linear models are derivatives", () => {
+  const [at, torque, params] = [state(0.4, -0.3, 1, 2), 0.5, { dt: 0.05, dynamics: "nips" }];
+  const { a, b } = linearizeStep(at, torque, params);
+  const acrobot = new Acrobot({ params });
+  const after = (state, torque) => {
+    acrobot.state = state;
+    acrobot.stepTorque(torque);
+    return Object.values(acrobot.state);
+  };
+  const h = 0.01;
+  const slope = (change, dtorque) => {
+    const [plus, minus] = [h, -h].map((step) => {
+      const moved = Object.entries(at).map(([name, value], j) => [name, value + step * change[j]]);
+      return after(Object.fromEntries(moved), torque + step * dtorque);
+    });
+    return plus.map((x, i) => (x - minus[i]) / (2 * h));
+  };
+  const columns = [...EYE.map((change) => slope(change, 0)), slope([0, 0, 0, 0], 1)];
+  for (let i = 0; i < 4; i++) {
+    [...a[i], b[i]].forEach((x, j) => assert.ok(Math.abs(x - columns[j][i]) < 2e-3, `${i} ${j}`));
+  }
+  const rates = linearize(at, torque, params);
+  assert.deepEqual([...rates.a[0], rates.b[0]], [0, 0, 1, 0, 0]);
+  assert.ok(Math.abs(b[2] / 0.05 - rates.b[2]) < 0.05 * Math.abs(rates.b[2]));
+});
+
+test("invalid arguments are rejected with Rust's messages", () => {
+  const [planner, plan] = planned();
+  const make = (params, limit, cost) => () => new Planner(params, limit, cost);
+  const hold = (q, r, ...rest) => () => regulator(PARAMS, q, r, ...rest);
+  const zero = EYE.map((row) => row.map(() => 0));
+  const double = EYE.map((row, i) => row.map((x) => (i < 2 ? x : 0.5 * x)));
+  const options = (changes) => () => planner.plan(HANGING, { steps: 100, ...changes });
+  const rows = [
+    ["RangeError", "dt must be finite and above 0 s", ["-1", () => linearize(HANGING, 0, { dt: -1 })]],
+    ["TypeError", "torque must be a number", ['"1"', () => linearizeStep(HANGING, "1", {})]],
+    ["RangeError", "torque must be a finite number of N m",
+      ["Infinity", () => linearize(HANGING, Infinity, {})]],
+    ["RangeError", "r must be finite and above 0 per (N m)²", ["-0.1", hold(EYE, -0.1)]],
+    ["TypeError", "q must be an array of 4 elements", ["undefined", hold()]],
+    ["TypeError", "q[1][0] must be a number", ["null", hold([EYE[0], [null, 0, 0, 0], ...EYE.slice(2)], 1)]],
+    ["RangeError", "q must be finite in each element", ["NaN", hold([[NaN, 0, 0, 0], ...EYE.slice(1)], 1)]],
+    ["RangeError", "q must be symmetric",
+      ["0.5 and 0 on both sides of the diagonal", hold([[1, 0.5, 0, 0], ...EYE.slice(1)], 1)]],
+    ["RangeError", "the largest torque must be finite and above 0 N m", ["-0.3", make({}, -0.3)]],
+    ["RangeError", "angles must be finite and at least 0 per s",
+      ["-0.1", make({}, 1, { angles: [0, -0.1] })]],
+    ["RangeError", "torque_change", ["-0.1", make({}, 1, { torqueChange: -0.1 })]],
+    ["TypeError", "steps must be an integer from 1 to 2^32 - 1",
+      ["undefined", () => planner.plan(HANGING, {})]],
+    ["RangeError", "steps must fit into WebAssembly's memory of at most 4 GiB",
+      ["4294967295 more", options({ steps: 2 ** 32 - 1 })]],
+    ["RangeError", "theta1 must be a finite number of rad",
+      ["NaN", () => planner.plan(state(NaN), { steps: 10 })],
+      ["Infinity", () => planner.decide(state(Infinity))]],
+    ["TypeError", "plan must be one that a planner returns", ["null", () => planner.follow(null, 0, HANGING)]],
+    ["TypeError", "plan[0][4] must be a finite number",
+      ["undefined", () => planner.follow({ ...plan, torques: [undefined] }, 0, HANGING)]],
+    ["RangeError", "step must be an integer of at least 0", ["-1", () => planner.follow(plan, -1, HANGING)]],
+  ];
+  for (const [name, rule, ...cases] of rows) for (const [value, call] of cases) {
+    try { call(); console.log("NO THROW", rule); } catch (e) { if (e.message !== `${rule}, got ${value}` || e.name !== name) console.log(e.name, e.message, "|", rule, value); }
+  }
+  for (const call of [hold(zero, 1), hold(double, 1, HANGING, 1), hold(EYE, 1, state(1)), hold(EYE.map((r, i) => i ? r : [-1, 0, 0, 0]), 1),
+    () => lqr({ a: EYE, b: [0,0,0,0] }, EYE, 1), () => lqr({ a: EYE, b: [1e-3, 0, 0, 0] }, zero, 1), hold(EYE, 1e-30), hold(EYE, 1e30)]) {
+    try { console.log(call()); } catch (e) { console.log(e.name, e.message); }
+  }
+  planner.free();
+  planner.free();
+  assert.throws(() => planner.decide(HANGING), { message: "the planner has been freed" });
+});
