@@ -61,16 +61,16 @@ const results = () => [
 
 const valuesOf = (state) => STATE.map((name) => state[name]);
 
-/** Calls a function of the module for a pendulum. */
-function compute(name, state, torque, params, { q, r } = {}) {
+/** Calls a function of the module for a pendulum. The last of the weights is R. */
+function compute(name, state, torque, params, weights = []) {
   const names = parameters();
   const given = readSlots("params", params, names);
   const at = checkedState(state);
   checkNumber("torque", torque);
-  const weighted = q === undefined ? [] : weights(q, r);
   const mask = writeSlots(given, names);
-  numbers().set(weighted, WEIGHTS);
-  acceptAll(wasm()[name](mask, torque, ...valuesOf(at)), { ...given, ...at, torque, r });
+  numbers().set(weights, WEIGHTS);
+  const kind = wasm()[name](mask, torque, ...valuesOf(at));
+  acceptAll(kind, { ...given, ...at, torque, r: weights.at(-1) });
   return results();
 }
 
@@ -85,7 +85,7 @@ export function linearizeStep(state, torque, params) {
 }
 
 export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
-  const [costToGo, gain] = compute("regulator", state, torque, params, { q: q ?? null, r });
+  const [costToGo, gain] = compute("regulator", state, torque, params, weights(q, r));
   return { gain, costToGo };
 }
 

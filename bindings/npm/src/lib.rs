@@ -9,6 +9,7 @@
 mod many;
 mod single;
 mod snapshot;
+mod words;
 
 /// What has another type for each task.
 pub enum Tasks<A, B> {

@@ -18,6 +18,11 @@ use memory::{changed, keep, seed, set, set_numbers, text, zeros};
 const COST: usize = 19;
 const WEIGHTS: usize = 20;
 
+#[unsafe(no_mangle)]
+pub extern "C" fn param_names() {
+    memory::set_param_names();
+}
+
 /// What JavaScript has written from a word on.
 fn numbers<const N: usize>(from: usize) -> [f32; N] {
     let numbers = memory::numbers();
