@@ -34,8 +34,9 @@ export function linearizeStep(
 ): LinearModel;
 
 /**
- * The regulator with the least sum of xᵀ Q x + R u² over all steps, about an equilibrium. Throws if
- * the state is none, or if there is no such regulator. `state` is upright and `torque` 0 by default.
+ * The regulator with the least sum of xᵀ Q x + R u² over all steps, about an equilibrium: by
+ * default upright, with a torque of 0. Throws if the state is none, or if there is no such
+ * regulator.
  */
 export function regulator(
   params: Readonly<Partial<Params>>, q: Matrix, r: number, state?: Readonly<State>, torque?: number,
