@@ -15,8 +15,8 @@ const COST = [
   "angles[0]", "angles[1]", "velocities[0]", "velocities[1]", "torque", "torqueChange", "power",
   "below", "height", "margin", "arrival",
 ];
-/** The word from which on the module has the weights of a regulator. */
-const WEIGHTS = 20;
+/** The first words of a regulator's weights and of a state. */
+const [WEIGHTS, STATE_WORD] = [20, 64];
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
 
 /** Rust's messages, by the kind of error less 4. */
@@ -59,39 +59,43 @@ const results = () => [
   numbers().slice(16, 20),
 ];
 
-const valuesOf = (state) => STATE.map((name) => state[name]);
+/** Writes a state. It comes after all other arguments, because reading these can run code. */
+function writeState(state) {
+  const given = checkedState(state);
+  numbers().set(STATE.map((name) => given[name]), STATE_WORD);
+  return given;
+}
 
 /** Calls a function of the module for a pendulum. The last of the weights is R. */
-function compute(name, state, torque, params, weights = []) {
+function compute(name, state, torque, params, flag, weights = []) {
   const names = parameters();
   const given = readSlots("params", params, names);
-  const at = checkedState(state);
   checkNumber("torque", torque);
+  const at = writeState(state);
   const mask = writeSlots(given, names);
   numbers().set(weights, WEIGHTS);
-  const kind = wasm()[name](mask, torque, ...valuesOf(at));
-  acceptAll(kind, { ...given, ...at, torque, r: weights.at(-1) });
+  acceptAll(wasm()[name](mask, torque, flag), { ...given, ...at, torque, r: weights.at(-1) });
   return results();
 }
 
 export function linearize(state, torque, params) {
-  const [a, b] = compute("linearize", state, torque, params);
+  const [a, b] = compute("linear_model", state, torque, params, false);
   return { a, b };
 }
 
 export function linearizeStep(state, torque, params) {
-  const [a, b] = compute("linearize_one_step", state, torque, params);
+  const [a, b] = compute("linear_model", state, torque, params, true);
   return { a, b };
 }
 
 export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
-  const [costToGo, gain] = compute("regulator", state, torque, params, weights(q, r));
+  const [costToGo, gain] = compute("regulator", state, torque, params, false, weights(q, r));
   return { gain, costToGo };
 }
 
 export function lqr(model, q, r) {
   numbers().set([...matrix("a", model?.a), ...row("b", model?.b), ...weights(q, r)]);
-  acceptAll(wasm().regulator_of_model(), { r });
+  acceptAll(wasm().regulator(0, 0, true), { r });
   const [costToGo, gain] = results();
   return { gain, costToGo };
 }
@@ -112,16 +116,6 @@ function rowOf(plan, step) {
   return elements(`plan[${step}]`, row, 9, isFinite32, "must be a finite number");
 }
 
-/** Copies rows of the module to the arrays of a plan. */
-function readRows(address, steps, plan) {
-  const rows = new Float32Array(wasm().memory.buffer, address, 9 * steps);
-  for (let step = 0, from = 0; step < steps; step++) {
-    for (const [name, size] of Object.entries(PLAN)) {
-      for (let i = 0; i < size; i++) plan[name][size * step + i] = rows[from++];
-    }
-  }
-}
-
 export class Planner extends Kept {
   constructor(params, limit, cost = {}) {
     const names = parameters();
@@ -133,9 +127,19 @@ export class Planner extends Kept {
     super("planner", allocated("planners", 1, integers()[0]));
   }
 
-  /** Makes memory for a plan in the module, and returns its address. */
-  #rows(steps) {
-    return allocated("steps", steps, call(this, "rows", steps) >>> 0);
+  #resize(steps) {
+    allocated("steps", steps, call(this, "resize", steps));
+  }
+
+  /** Copies the module's plan to the arrays of one. */
+  #read(plan, steps) {
+    for (let step = 0; step < steps; step++) {
+      call(this, "read", step);
+      let from = 0;
+      for (const [name, size] of Object.entries(PLAN)) {
+        for (let i = 0; i < size; i++) plan[name][size * step + i] = numbers()[from++];
+      }
+    }
   }
 
   plan(start, options) {
@@ -143,29 +147,30 @@ export class Planner extends Kept {
     const { tries = 64, seed = randomSeed(), steps } = given;
     positive("tries", tries);
     positive("steps", steps);
-    const state = checkedState(start);
-    const words = writeSeed(seed);
-    const address = this.#rows(steps);
-    const kind = call(this, "plan", words, tries, ...valuesOf(state));
+    const state = writeState(start);
+    this.#resize(steps);
+    const kind = call(this, "plan", writeSeed(seed), tries);
     if (kind === NOT_FOUND) return null;
     acceptAll(kind, state);
     const [length] = integers();
-    const entries = Object.entries(PLAN);
-    const plan = entries.map(([name, size]) => [name, new Float32Array(size * length)]);
-    const found = Object.fromEntries(plan);
-    readRows(address, length, found);
-    return found;
+    const [states, gains] = [4, 4].map((size) => new Float32Array(size * length));
+    const plan = { states, torques: new Float32Array(length), gains };
+    this.#read(plan, length);
+    return plan;
   }
 
   improve(start, iterations, plan) {
     positive("iterations", iterations);
-    const state = checkedState(start);
     const rows = Array.from({ length: lengthOf(plan) }, (_, step) => rowOf(plan, step));
-    const address = this.#rows(rows.length);
-    new Float32Array(wasm().memory.buffer, address).set(rows.flat());
-    acceptAll(call(this, "improve", iterations, ...valuesOf(state)), state);
+    const state = writeState(start);
+    this.#resize(rows.length);
+    rows.forEach((row, step) => {
+      numbers().set(row);
+      call(this, "set", step);
+    });
+    acceptAll(call(this, "improve", iterations), state);
     const [cost] = numbers();
-    readRows(address, rows.length, plan);
+    this.#read(plan, rows.length);
     return cost;
   }
 
@@ -175,14 +180,14 @@ export class Planner extends Kept {
     }
     const isPlanned = step < lengthOf(plan);
     const row = isPlanned ? rowOf(plan, step) : [];
-    const at = checkedState(state);
+    writeState(state);
     numbers().set(row);
-    return call(this, "follow", isPlanned, ...valuesOf(at));
+    return call(this, "follow", isPlanned);
   }
 
   decide(state) {
-    const at = checkedState(state);
-    acceptAll(call(this, "decide", ...valuesOf(at)), at);
+    const at = writeState(state);
+    acceptAll(call(this, "decide"), at);
     return numbers()[0];
   }
 }

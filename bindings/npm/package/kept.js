@@ -131,7 +131,7 @@ export let addressOf, call;
 /** The address of what the module has memory for, or an error. */
 export function allocated(what, count, address) {
   const rule = `${what} must fit into WebAssembly's memory of at most 4 GiB`;
-  if (address === 0) throw new RangeError(`${rule}, got ${count} more`);
+  if (!address) throw new RangeError(`${rule}, got ${count} more`);
   return address;
 }
 

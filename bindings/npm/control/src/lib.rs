@@ -1,22 +1,23 @@
 //! The WebAssembly module of `acrobot-rs/control`: linear models, regulators and a planner.
 //!
-//! Parameters, weights and results pass through the words of `memory`, plans through memory of
-//! their own. A function returns 0, or the kind of error, whose details are in the words.
+//! All data but single numbers passes through the words of `memory`. A function returns 0, or the kind of error, whose details are in the words.
 
 use std::slice;
 
 use acrobot::arithmetic::Damped;
 use acrobot::control::{
-    self, ControlError, Cost, Knot, LinearModel, Lqr, NoPlan, linearize_step, lqr,
+    self, ControlError, Cost, Knot, LinearModel, Lqr, NoPlan, linearize, linearize_step, lqr,
 };
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, State};
 use memory::{changed, keep, seed, set, set_numbers, text, zeros};
 
-/// The first words of weights: those of a cost follow the parameters, those of a regulator a model.
+/// The words of the weights of a cost follow the parameters, those of a regulator a model, and those
+/// of a state the longest seed.
 const COST: usize = 19;
 const WEIGHTS: usize = 20;
+const STATE: usize = 64;
 
 #[unsafe(no_mangle)]
 pub extern "C" fn param_names() {
@@ -32,6 +33,15 @@ fn numbers<const N: usize>(from: usize) -> [f32; N] {
 
 fn matrix(from: usize) -> [[f32; 4]; 4] {
     [0, 4, 8, 12].map(|row| numbers(from + row))
+}
+
+fn state() -> State<f32> {
+    numbers(STATE).into()
+}
+
+/// The pendulum with the parameters in the mask.
+fn pendulum(mask: u32) -> Result<Pendulum<Damped<Fast>>, ControlError> {
+    Ok(Pendulum::new(changed(Params::DEFAULT, mask), state())?)
 }
 
 /// Writes a result, and returns 0, or the kind of error. JavaScript composes the message, as with
@@ -58,85 +68,46 @@ fn write<const N: usize>(result: Result<[f32; N], ControlError>) -> u32 {
     kind
 }
 
-/// The numbers of a matrix by rows, then those of a vector.
-fn flat(m: [[f32; 4]; 4], v: [f32; 4]) -> [f32; 20] {
-    let [[a, b, c, d], [e, f, g, h], [i, j, k, l], [m, n, o, p]] = m;
-    let [q, r, s, t] = v;
-    [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t]
-}
-
-fn write_model(model: Result<LinearModel<f32>, ControlError>) -> u32 {
-    write(model.map(|LinearModel { a, b }| flat(a, b)))
-}
-
-fn write_regulator(regulator: Result<Lqr<f32>, ControlError>) -> u32 {
-    write(regulator.map(|Lqr { gain, cost_to_go }| flat(cost_to_go, gain)))
-}
-
-/// The pendulum with the parameters in the mask, in a state.
-fn pendulum(mask: u32, state: [f32; 4]) -> Result<Pendulum<Damped<Fast>>, ControlError> {
-    Ok(Pendulum::new(changed(Params::DEFAULT, mask), state.into())?)
+/// Writes a matrix by rows, then a vector.
+fn write_matrix(result: Result<([[f32; 4]; 4], [f32; 4]), ControlError>) -> u32 {
+    write(result.map(|(matrix, vector)| {
+        let mut numbers = [0.0; 20];
+        let rows = matrix.as_flattened().iter().chain(&vector);
+        numbers.iter_mut().zip(rows).for_each(|(to, x)| *to = *x);
+        numbers
+    }))
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn linearize(mask: u32, torque: f32, a: f32, b: f32, c: f32, d: f32) -> u32 {
-    let pendulum = pendulum(mask, [a, b, c, d]);
-    write_model(pendulum.and_then(|pendulum| control::linearize(&pendulum, torque)))
+pub extern "C" fn linear_model(mask: u32, torque: f32, of_step: bool) -> u32 {
+    let linearize = if of_step { linearize_step } else { linearize };
+    let model = pendulum(mask).and_then(|pendulum| linearize(&pendulum, torque));
+    write_matrix(model.map(|LinearModel { a, b }| (a, b)))
 }
 
+/// The regulator of the linear model in the words, or of a pendulum.
 #[unsafe(no_mangle)]
-pub extern "C" fn linearize_one_step(
-    mask: u32,
-    torque: f32,
-    a: f32,
-    b: f32,
-    c: f32,
-    d: f32,
-) -> u32 {
-    let pendulum = pendulum(mask, [a, b, c, d]);
-    write_model(pendulum.and_then(|pendulum| linearize_step(&pendulum, torque)))
-}
-
-/// The weights Q and R.
-fn weights() -> ([[f32; 4]; 4], f32) {
-    let [r] = numbers(WEIGHTS + 16);
-    (matrix(WEIGHTS), r)
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn regulator(mask: u32, torque: f32, a: f32, b: f32, c: f32, d: f32) -> u32 {
-    let (q, r) = weights();
-    let pendulum = pendulum(mask, [a, b, c, d]);
-    write_regulator(pendulum.and_then(|pendulum| control::regulator(&pendulum, torque, &q, r)))
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn regulator_of_model() -> u32 {
-    let (q, r) = weights();
-    write_regulator(lqr(&LinearModel { a: matrix(0), b: numbers(16) }, &q, r))
+pub extern "C" fn regulator(mask: u32, torque: f32, of_model: bool) -> u32 {
+    let (q, [r]) = (matrix(WEIGHTS), numbers(WEIGHTS + 16));
+    let regulator = match of_model {
+        true => lqr(&LinearModel { a: matrix(0), b: numbers(16) }, &q, r),
+        false => pendulum(mask).and_then(|pendulum| control::regulator(&pendulum, torque, &q, r)),
+    };
+    write_matrix(regulator.map(|Lqr { gain, cost_to_go }| (cost_to_go, gain)))
 }
 
 /// A planner with memory for a plan.
 pub struct Planner {
     planner: control::Planner<Damped<Fast>>,
     knots: Vec<Knot<f32>>,
-    /// The knots, as JavaScript reads and writes them.
-    rows: Vec<Row>,
 }
 
-/// A knot's state, torque and gain.
-type Row = [f32; 9];
-
-fn row(knot: &Knot<f32>) -> Row {
-    let State { theta1, theta2, dtheta1, dtheta2 } = knot.state;
-    let [k1, k2, k3, k4] = knot.gain;
-    [theta1, theta2, dtheta1, dtheta2, knot.torque, k1, k2, k3, k4]
-}
-
-fn knot([theta1, theta2, dtheta1, dtheta2, torque, gain @ ..]: Row) -> Knot<f32> {
+/// The knot in the words: its state, torque and gain.
+fn knot() -> Knot<f32> {
+    let [state, gain] = [numbers::<4>(0), numbers(5)];
+    let [torque] = numbers(4);
     let mut knot = Knot::open(torque);
-    knot.state = State { theta1, theta2, dtheta1, dtheta2 };
-    knot.gain = gain;
+    (knot.state, knot.gain) = (state.into(), gain);
     knot
 }
 
@@ -172,7 +143,7 @@ pub extern "C" fn planner_new(mask: u32, limit: f32) -> u32 {
     let params = changed(Params::DEFAULT, mask);
     match control::Planner::with_cost(params, limit, cost(&params, mask)) {
         Ok(planner) => {
-            let planner = keep(Planner { planner, knots: Vec::new(), rows: Vec::new() });
+            let planner = keep(Planner { planner, knots: Vec::new() });
             set(&[planner.map_or(0, |planner| Box::into_raw(planner).addr() as u32)]);
             0
         }
@@ -185,34 +156,38 @@ pub extern "C" fn planner_free(planner: Box<Planner>) {
     drop(planner);
 }
 
-/// Makes memory for a plan. Returns the address of its rows, or 0 without memory.
+/// Makes memory for a plan, if there is any.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_rows(planner: &mut Planner, steps: usize) -> usize {
-    // SAFETY: both are numbers.
-    let (knots, rows) = unsafe { (zeros(steps), zeros(steps)) };
-    let (Some(knots), Some(rows)) = (knots, rows) else {
-        return 0;
-    };
-    (planner.knots, planner.rows) = (knots, rows);
-    planner.rows.as_ptr().addr()
+pub extern "C" fn planner_resize(planner: &mut Planner, steps: usize) -> bool {
+    // SAFETY: a knot has numbers only.
+    let knots = unsafe { zeros(steps) };
+    knots.map(|knots| planner.knots = knots).is_some()
+}
+
+/// Writes a knot of the plan.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_read(planner: &Planner, step: usize) {
+    if let Some(Knot { state, torque, gain: [k1, k2, k3, k4], .. }) = planner.knots.get(step) {
+        let State { theta1, theta2, dtheta1, dtheta2 } = *state;
+        set_numbers([theta1, theta2, dtheta1, dtheta2, *torque, *k1, *k2, *k3, *k4]);
+    }
+}
+
+/// Sets a knot of the plan.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_set(planner: &mut Planner, step: usize) {
+    if let Some(place) = planner.knots.get_mut(step) {
+        *place = knot();
+    }
 }
 
 /// Plans with a seed of so many words. Writes the length of the plan, or returns 11 if it finds
 /// none.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_plan(
-    Planner { planner, knots, rows }: &mut Planner,
-    words: usize,
-    tries: u32,
-    a: f32,
-    b: f32,
-    c: f32,
-    d: f32,
-) -> u32 {
+pub extern "C" fn planner_plan(planner: &mut Planner, words: usize, tries: u32) -> u32 {
     let mut rng = Pcg64::from(seed(words));
-    match planner.plan([a, b, c, d].into(), tries, &mut rng, knots) {
+    match planner.planner.plan(state(), tries, &mut rng, &mut planner.knots) {
         Ok(plan) => {
-            rows.iter_mut().zip(&*plan).for_each(|(to, knot)| *to = row(knot));
             set(&[plan.len() as u32]);
             0
         }
@@ -221,40 +196,23 @@ pub extern "C" fn planner_plan(
     }
 }
 
-/// Improves the plan in the rows. Writes its cost.
+/// Improves the plan. Writes its cost.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_improve(
-    Planner { planner, knots, rows }: &mut Planner,
-    iterations: u32,
-    a: f32,
-    b: f32,
-    c: f32,
-    d: f32,
-) -> u32 {
-    knots.iter_mut().zip(&*rows).for_each(|(to, row)| *to = knot(*row));
-    let cost = planner.improve([a, b, c, d].into(), iterations, knots);
-    rows.iter_mut().zip(knots).for_each(|(to, knot)| *to = row(knot));
+pub extern "C" fn planner_improve(planner: &mut Planner, iterations: u32) -> u32 {
+    let cost = planner.planner.improve(state(), iterations, &mut planner.knots);
     write(cost.map(|cost| [cost]))
 }
 
-/// The torque that follows the row in the words, or that of the regulator after a plan.
+/// The torque that follows the knot in the words, or that of the regulator after a plan.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_follow(
-    planner: &Planner,
-    is_planned: bool,
-    a: f32,
-    b: f32,
-    c: f32,
-    d: f32,
-) -> f32 {
-    let knot = knot(numbers(0));
+pub extern "C" fn planner_follow(planner: &Planner, is_planned: bool) -> f32 {
+    let knot = knot();
     let plan = if is_planned { slice::from_ref(&knot) } else { &[] };
-    planner.planner.follow(plan, 0, [a, b, c, d].into())
+    planner.planner.follow(plan, 0, state())
 }
 
 /// Writes the torque without a plan.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_decide(planner: &mut Planner, a: f32, b: f32, c: f32, d: f32) -> u32 {
-    let torque = planner.planner.decide([a, b, c, d].into());
-    write(torque.map(|torque| [torque]).map_err(ControlError::Invalid))
+pub extern "C" fn planner_decide(planner: &mut Planner) -> u32 {
+    write(planner.planner.decide(state()).map(|torque| [torque]).map_err(ControlError::Invalid))
 }
