@@ -94,7 +94,8 @@ export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
 }
 
 export function lqr(model, q, r) {
-  numbers().set([...matrix("a", model?.a), ...row("b", model?.b), ...weights(q, r)]);
+  const words = [...matrix("a", model?.a), ...row("b", model?.b), ...weights(q, r)];
+  numbers().set(words);
   acceptAll(wasm().regulator(0, 0, true), { r });
   const [costToGo, gain] = results();
   return { gain, costToGo };

@@ -1,6 +1,7 @@
 //! The WebAssembly module of `acrobot-rs/control`: linear models, regulators and a planner.
 //!
-//! All data but single numbers passes through the words of `memory`. A function returns 0, or the kind of error, whose details are in the words.
+//! All data except single numbers passes through the words of `memory`. A function returns 0, or the
+//! kind of error, whose details are in the words.
 
 use std::slice;
 
@@ -13,8 +14,8 @@ use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, State};
 use memory::{changed, keep, seed, set, set_numbers, text, zeros};
 
-/// The words of the weights of a cost follow the parameters, those of a regulator a model, and those
-/// of a state the longest seed.
+/// The first words of the weights of a cost, after the parameters, of those of a regulator, after a
+/// model, and of a state, after the longest seed.
 const COST: usize = 19;
 const WEIGHTS: usize = 20;
 const STATE: usize = 64;
