@@ -147,7 +147,8 @@ test("invalid arguments are rejected with Rust's messages", () => {
       ["Infinity", () => planner.decide(state(Infinity))]],
     ["TypeError", "plan must be one that a planner returns",
       ["null", () => planner.follow(null, 0, HANGING)]],
-    ["TypeError", "plan[0][5] must be a finite number", ["undefined", improve(HANGING, { gains: [] })]],
+    ["TypeError", "plan[0][5] must be a finite number",
+      ["undefined", improve(HANGING, { gains: [] })]],
     ["RangeError", "step must be an integer of at least 0",
       ["-1", () => planner.follow(plan, -1, HANGING)]],
   ];

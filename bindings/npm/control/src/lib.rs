@@ -1,7 +1,7 @@
 //! The WebAssembly module of `acrobot-rs/control`: linear models, regulators and a planner.
 //!
-//! All data except single numbers passes through the words of `memory`. A function returns 0, or the
-//! kind of error, whose details are in the words.
+//! All data except single numbers passes through the words of `memory`. A function returns 0, or
+//! the kind of error, whose details are in the words.
 
 use std::slice;
 

@@ -94,8 +94,8 @@ pub fn set_param_names() {
     set(names.as_flattened());
 }
 
-/// The parameters with some replaced by what JavaScript has written in the order of their names, the
-/// dynamics last: those whose bit is in `mask`.
+/// The parameters with some replaced by what JavaScript has written in the order of their names,
+/// the dynamics last: those whose bit is in `mask`.
 pub fn changed(mut params: Params<f32>, mask: u32) -> Params<f32> {
     let numbers = numbers();
     let is_given = |slot: usize| mask >> slot & 1 != 0;
