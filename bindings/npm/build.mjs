@@ -79,6 +79,7 @@ mkdirSync("dist");
 buildSync({ entryPoints: ["tiny-inflate"], minify: true, outfile: "target/inflate.js", ...ESM });
 bundle("index", "acrobot_npm");
 bundle("policies", "acrobot_learner");
+bundle("control", "acrobot_control");
 // npm shows what users need to know.
 writeFileSync("dist/README.md", readFileSync("README.md", "utf8").split("\n## Build and test")[0]);
 for (const file of ["package/package.json", "../../LICENSE-APACHE", "../../LICENSE-MIT"]) {

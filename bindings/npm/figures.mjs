@@ -37,6 +37,7 @@ const size = (path) => {
   const code = readFileSync(path);
   return `${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)}`;
 };
+const control = kilobytes(statSync("target/acrobot_control.wasm").size);
 const report = execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"]);
 const [{ size: packed, unpackedSize }] = JSON.parse(report);
 console.log(`
@@ -45,6 +46,7 @@ console.log(`
 | WebAssembly module, with simd128 | ${kilobytes(statSync("target/acrobot_npm.wasm").size)} |
 | \`index.js\`, with the module inside | ${size("dist/index.js")} |
 | \`policies.js\`, with the learner's inside | ${size("dist/policies.js")} |
+| \`control.js\`, with a module of ${control} inside | ${size("dist/control.js")} |
 | package, with types and licences | ${kilobytes(unpackedSize)}, packed ${kilobytes(packed)} |
 | \`Acrobot.step\` | ${single} |
 | \`Batch.step\` of 1,024, with observations | ${many} |`);

@@ -5,6 +5,7 @@
 //! 4 u² / (K P⁻¹ Kᵀ). A simulation that stays in half of it, near enough to upright for the linear
 //! model to hold, has recovered.
 
+use core::array;
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use super::deviation::difference;
@@ -148,7 +149,7 @@ pub(super) fn is_below<S: Real>(state: State<S>, [bound1, bound2]: [S; 2]) -> bo
 /// U with P = Uᵀ U for a symmetric, positive definite P.
 #[expect(clippy::indexing_slicing, reason = "the indices are 0 to 3")]
 fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
-    [0, 1, 2, 3].map(|i: usize| {
+    array::from_fn(|i| {
         let i = i % 4; // without it, a Cortex-M0 checks bounds
         let root = Real::sqrt(p[i][i]);
         let row = p[i].map(|x| x / root);
@@ -162,7 +163,7 @@ fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
 /// The largest k x where |U x| ≤ 1: |y| for Uᵀ y = k.
 #[expect(clippy::indexing_slicing, reason = "the indices are 0 to 3")]
 fn largest(u: &[[f64; 4]; 4], mut k: [f64; 4]) -> f64 {
-    let y = [0, 1, 2, 3].map(|i| {
+    let y = array::from_fn(|i| {
         let y = k[i] / u[i][i];
         k = plus_scaled(k, -y, u[i]);
         y

@@ -2,8 +2,8 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, TASKS, addressOf, call, indexOf, isAction, isFinite32, orFree, readState, setState,
-  writeSeed,
+  ACTION, Environment, TASKS, addressOf, allocated, call, indexOf, isAction, isFinite32, orFree,
+  readState, setState, writeSeed,
 } from "./kept.js";
 import { load, save } from "./snapshot.js";
 import {
@@ -23,7 +23,7 @@ function results(flags) {
   return { observation: observation(), reward: numbers()[6], terminated, truncated };
 }
 
-export class Acrobot extends Kept {
+export class Acrobot extends Environment {
   /** The action or the torque of the last step, for its picture. */
   #action = 1;
   #torque;
@@ -33,7 +33,7 @@ export class Acrobot extends Kept {
     const { seed = randomSeed(), params = {}, maxSteps, task = TASKS[0], draws = {} } = given;
     const index = indexOf("task", TASKS, task);
     const limit = maxSteps === undefined ? 0 : positive("maxSteps", maxSteps);
-    super("acrobot", wasm().acrobot_new(limit, index), 1);
+    super("acrobot", allocated("acrobots", 1, wasm().acrobot_new(limit, index)));
     orFree(this, () => {
       this.setParams(params);
       this.setDraws(draws);

@@ -2,8 +2,8 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, TASKS, addressOf, call, changeParams, elements, indexOf, isAction, isFinite32,
-  orFree, readParams, readState, setState, writeSeed,
+  ACTION, Environment, TASKS, addressOf, allocated, call, changeParams, elements, indexOf, isAction,
+  isFinite32, orFree, readParams, readState, setState, writeSeed,
 } from "./kept.js";
 import { load, save } from "./snapshot.js";
 import {
@@ -27,7 +27,7 @@ const ARRAYS = {
 };
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
-export class Batch extends Kept {
+export class Batch extends Environment {
   #settings;
   /** The addresses of the arrays. */
   #addresses;
@@ -50,7 +50,8 @@ export class Batch extends Kept {
     if (typeof ownParams !== "boolean") {
       throw invalid("ownParams must be true or false", ownParams, []);
     }
-    super("batch", wasm().batch_new(count, limit, mode, ownParams, index), count);
+    const address = wasm().batch_new(count, limit, mode, ownParams, index);
+    super("batch", allocated("acrobots", count, address));
     orFree(this, () => {
       this.setParams(params);
       if (draws !== undefined) this.setDraws(draws);

@@ -4,7 +4,7 @@ import {
   Opaque, camelCase, checked, integers, invalid, invalidSingle, numbers, seedWords, text, wasm,
 } from "./wasm.js";
 
-const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
+export const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
 const DYNAMICS = ["book", "nips"];
 /** The kinds of draws in the order of the module, with the count of their numbers. */
 const DRAWS = { fixed: 0, asBefore: 0, uniform: 2, logUniform: 2, normal: 4 };
@@ -13,11 +13,11 @@ export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 
 export const isAction = (action) => action === 0 || action === 1 || action === 2;
 
-const isNumber = (value) => typeof value === "number";
+export const isNumber = (value) => typeof value === "number";
 
 export const isFinite32 = (number) => isNumber(number) && Number.isFinite(Math.fround(number));
 
-function checkNumber(name, value) {
+export function checkNumber(name, value) {
   if (!isNumber(value)) throw invalid(`${name} must be a number`, value);
 }
 
@@ -52,7 +52,7 @@ export function writeSeed(seed) {
 let slots;
 
 /** The names of the parameters in the order of the module: its numbers, and the dynamics. */
-function parameters() {
+export function parameters() {
   if (!slots) {
     wasm().param_names();
     const numbers = Array.from({ length: 18 }, (_, i) => camelCase(text(2 * i)));
@@ -61,14 +61,30 @@ function parameters() {
   return slots;
 }
 
-/** The properties of an object by their names in `parameters`: of `torques`, each element. */
-function readSlots(what, object, slots) {
+/** The properties of an object by their names in `slots`: of `torques`, each element. */
+export function readSlots(what, object, slots) {
   const names = [...new Set(slots.map((name) => name.replace(/\[.*/, "")))];
   const entries = Object.entries(checked(what, object, names)).flatMap(([name, value]) => {
-    if (name !== "torques") return [[name, value]];
-    return elements(name, value, 3, () => true).map((each, i) => [`${name}[${i}]`, each]);
+    const count = slots.filter((slot) => slot.startsWith(`${name}[`)).length;
+    if (count === 0) return [[name, value]];
+    return elements(name, value, count, () => true).map((each, i) => [`${name}[${i}]`, each]);
   });
   return Object.fromEntries(entries);
+}
+
+/** Writes values by their names in `slots`, with `dynamics` as its index. Returns their mask. */
+export function writeSlots(given, slots) {
+  for (const [name, value] of Object.entries(given)) {
+    if (name === "dynamics") given[name] = indexOf(name, DYNAMICS, value);
+    else checkNumber(name, value);
+  }
+  let mask = 0;
+  for (const [name, value] of Object.entries(given)) {
+    const slot = slots.indexOf(name);
+    numbers()[slot] = value;
+    mask |= 1 << slot;
+  }
+  return mask;
 }
 
 /** A draw as the module reads it: the index of its kind, and its numbers. */
@@ -88,7 +104,7 @@ function readDraw(name, draw) {
  * Throws if the module has rejected numbers. `given` has those of the caller by their names, as
  * numbers or in arrays.
  */
-function accept(kind, given) {
+export function accept(kind, given) {
   if (kind === 0) return;
   const shared = "ownParams must be true for parameters of each acrobot";
   if (kind === 3) throw invalid(shared, false, ["boolean"]);
@@ -97,7 +113,8 @@ function accept(kind, given) {
   const friction = '0 in the task "acrobot", in N m s/rad';
   const rule = kind === 2 ? friction : `${text(3)} ${text(5)}`;
   // What the caller gave, before it was rounded.
-  const own = [given[name]].flat().find((number) => Object.is(Math.fround(number), value));
+  const all = [given[name], given[`${name}[0]`], given[`${name}[1]`]].flat();
+  const own = all.find((number) => Object.is(Math.fround(number), value));
   throw invalidSingle(`${name} must be ${rule}`, own ?? value);
 }
 
@@ -111,7 +128,14 @@ const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(fre
  */
 export let addressOf, call;
 
-/** What the module keeps at an address: an acrobot or a batch. */
+/** The address of what the module has memory for, or an error. */
+export function allocated(what, count, address) {
+  const rule = `${what} must fit into WebAssembly's memory of at most 4 GiB`;
+  if (!address) throw new RangeError(`${rule}, got ${count} more`);
+  return address;
+}
+
+/** What the module keeps at an address: an acrobot, a batch or a planner. */
 export class Kept extends Opaque {
   #kind;
   #address;
@@ -124,15 +148,28 @@ export class Kept extends Opaque {
     call = (kept, name, ...given) => wasm()[`${kept.#kind}_${name}`](addressOf(kept), ...given);
   }
 
-  constructor(kind, address, count) {
+  constructor(kind, address) {
     super();
-    const rule = "acrobots must fit into WebAssembly's memory of at most 4 GiB";
-    if (address === 0) throw new RangeError(`${rule}, got ${count} more`);
     this.#kind = kind;
     this.#address = address;
     registry?.register(this, { kind, address }, this);
   }
 
+  free() {
+    if (this.#address === 0) return;
+    registry?.unregister(this);
+    free({ kind: this.#kind, address: this.#address });
+    this.#address = 0;
+  }
+
+  // Older engines have neither `using` nor this symbol.
+  [Symbol.dispose ?? Symbol("dispose")]() {
+    this.free();
+  }
+}
+
+/** An acrobot or a batch. */
+export class Environment extends Kept {
   get params() {
     return readParams(this, 0);
   }
@@ -148,18 +185,6 @@ export class Kept extends Opaque {
     numbers().fill(0);
     for (const [name, row] of Object.entries(given)) numbers().set(row, 5 * names.indexOf(name));
     accept(call(this, "set_draws"), given);
-  }
-
-  free() {
-    if (this.#address === 0) return;
-    registry?.unregister(this);
-    free({ kind: this.#kind, address: this.#address });
-    this.#address = 0;
-  }
-
-  // Older engines have neither `using` nor this symbol.
-  [Symbol.dispose ?? Symbol("dispose")]() {
-    this.free();
   }
 }
 
@@ -177,10 +202,16 @@ export function orFree(kept, make) {
 export const readState = () =>
   Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
 
-/** Sets the state of a single acrobot, or of acrobot `index` of a batch. */
-export function setState(kept, state, index) {
+/** The four numbers of a state, by their names. */
+export function checkedState(state) {
   const given = checked("state", state, STATE);
   for (const name of STATE) checkNumber(name, given[name]);
+  return given;
+}
+
+/** Sets the state of a single acrobot, or of acrobot `index` of a batch. */
+export function setState(kept, state, index) {
+  const given = checkedState(state);
   numbers().set(STATE.map((name) => given[name]));
   accept(call(kept, "set_state", index), given);
 }
@@ -202,15 +233,6 @@ export function readParams(kept, index) {
 export function changeParams(kept, changes, index) {
   const names = parameters();
   const given = readSlots("params", changes, names);
-  for (const [name, value] of Object.entries(given)) {
-    if (name === "dynamics") given[name] = indexOf(name, DYNAMICS, value);
-    else checkNumber(name, value);
-  }
-  let mask = 0;
-  for (const [name, value] of Object.entries(given)) {
-    const slot = names.indexOf(name);
-    numbers()[slot] = value;
-    mask |= 1 << slot;
-  }
+  const mask = writeSlots(given, names);
   accept(call(kept, "set_params", mask, index !== undefined, index), given);
 }

@@ -7,20 +7,9 @@
 //! returns 0, or the kind of error, whose details are in the words.
 
 mod many;
-mod memory;
 mod single;
 mod snapshot;
-
-use lol_alloc::{AssumeSingleThreaded, FreeListAllocator};
-
-#[cfg(target_feature = "atomics")]
-compile_error!("the allocator needs a module with one thread");
-
-/// std's allocator would add 5 KB.
-// SAFETY: a module without atomics has one thread.
-#[global_allocator]
-static ALLOCATOR: AssumeSingleThreaded<FreeListAllocator> =
-    unsafe { AssumeSingleThreaded::new(FreeListAllocator::new()) };
+mod words;
 
 /// What has another type for each task.
 pub enum Tasks<A, B, C> {

@@ -11,9 +11,9 @@ use acrobot::task::{Balance, Draw, Draws, Gymnasium, ResetBounds, Swingup};
 use acrobot::{Error, Fast, Params, ResetOptions};
 use serde::Serialize;
 
-use crate::memory::{self, set_numbers, zeros};
 use crate::snapshot::{self, Reader, Rejected, read};
-use crate::{Tasks, with_task};
+use crate::{Tasks, with_task, words};
+use memory::{set_numbers, zeros};
 
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
@@ -233,7 +233,7 @@ impl Many {
     }
 
     fn set_draws(&mut self) -> Result<(), Error> {
-        let draws = memory::get_draws()?;
+        let draws = words::get_draws()?;
         with_task!(&mut self.batch, batch => batch.set_draws(draws))
     }
 }
@@ -280,7 +280,7 @@ pub extern "C" fn batch_state(many: &Many, index: usize) {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_state(many: &mut Many, index: usize) -> u32 {
-    let state = memory::get_state();
+    let state = words::get_state();
     memory::reason(with_task!(&mut many.batch, batch => batch.set_state_of(index, state)))
 }
 
@@ -292,7 +292,7 @@ pub extern "C" fn batch_elapsed_steps(many: &Many, index: usize) -> u32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_params(many: &Many, index: usize) {
     if let Some(params) = with_task!(&many.batch, batch => batch.params_of(index)) {
-        memory::set_params(&params);
+        words::set_params(&params);
     }
 }
 

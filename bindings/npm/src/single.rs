@@ -9,9 +9,9 @@ use acrobot::task::{Balance, Draws, Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Step};
 use serde::Serialize;
 
-use crate::memory::{self, set_numbers};
 use crate::snapshot::{self, Reader, Rejected, read};
-use crate::{Tasks, with_task};
+use crate::{Tasks, with_task, words};
+use memory::set_numbers;
 
 type AnyTask = Tasks<Acrobot<Fast>, Acrobot<Damped<Fast>, Swingup>, Acrobot<Damped<Fast>, Balance>>;
 
@@ -113,12 +113,12 @@ pub extern "C" fn acrobot_read(one: &One) {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_set_state(one: &mut One) -> u32 {
-    memory::reason(with_task!(&mut one.acrobot, acrobot => acrobot.set_state(memory::get_state())))
+    memory::reason(with_task!(&mut one.acrobot, acrobot => acrobot.set_state(words::get_state())))
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_params(one: &One) {
-    memory::set_params(with_task!(&one.acrobot, acrobot => acrobot.params()));
+    words::set_params(with_task!(&one.acrobot, acrobot => acrobot.params()));
 }
 
 /// Checks parameters, and what draws can make of them.
@@ -142,7 +142,7 @@ impl One {
     }
 
     fn set_draws(&mut self) -> Result<(), Error> {
-        let draws = memory::get_draws()?;
+        let draws = words::get_draws()?;
         with_task!(&self.acrobot, acrobot => check(acrobot, *acrobot.params(), &draws))?;
         self.draws = draws;
         Ok(())

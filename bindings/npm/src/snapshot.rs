@@ -13,7 +13,7 @@ use postcard::ser_flavors::{Flavor, Slice};
 use postcard::{Deserializer, Serializer, de_flavors};
 use serde::{Deserialize, Serialize};
 
-use crate::memory::{self, zeros};
+use memory::zeros;
 
 /// Why JavaScript's snapshot is rejected, as JavaScript numbers it.
 pub enum Rejected {

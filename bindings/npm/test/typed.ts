@@ -2,6 +2,8 @@
 
 import { Acrobot, Batch, moduleBytes, setModule } from "acrobot-rs";
 import type { Action, BatchStep, Context, Options, Params, State, Step, Task } from "acrobot-rs";
+import { Planner, linearizeStep, lqr, regulator } from "acrobot-rs/control";
+import type { Plan } from "acrobot-rs/control";
 import { Learner, bangBang, energyLaw, uprightEnergy } from "acrobot-rs/policies";
 
 const changes: Options["params"] = { dt: 0.05, torques: [-2, 0, 2], dynamics: "nips" };
@@ -38,6 +40,15 @@ learner.load(learner.save());
 const actions: Action[] = [bangBang(acrobot), energyLaw(acrobot), learner.act(acrobot)];
 const energy: number = uprightEnergy(acrobot.params) - acrobot.energy;
 
+using planner = new Planner(acrobot.params, 2, { torqueChange: 1, angles: [0.1, 0] });
+const plan: Plan | null = planner.plan(state, { steps: 500, seed: 7n });
+const cost: number = plan ? planner.improve(state, 10, plan) : 0;
+const eye = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
+const gains: Float32Array[] = [
+  regulator({ dt: 0.05 }, eye, 1).gain,
+  lqr(linearizeStep(state, 0, params), eye, 1).gain,
+];
+
 setModule(new WebAssembly.Module(Uint8Array.from(moduleBytes())));
 
 export const draws: ((context: Context) => void)[] = [(context) => batch.draw(context, 2)];
@@ -64,5 +75,9 @@ acrobot.energy = 1;
 acrobot.restore([1, 2]);
 // @ts-expect-error
 new Batch({ seed: 1 });
+// @ts-expect-error
+planner.follow(planner.plan(state, { steps: 500 }), 0, state);
+// @ts-expect-error
+new Planner({}, 2, { torques: 1 });
 
-export { actions, energy, finals, mode, resumed, step, task };
+export { actions, cost, energy, finals, gains, mode, resumed, step, task };

@@ -1,12 +1,21 @@
-//! What the exported functions share: memory for acrobots, and words to exchange values.
+//! What the modules share: memory for what JavaScript keeps, and words to exchange values.
 
 use std::alloc::{Layout, alloc, alloc_zeroed};
 use std::cell::Cell;
 
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::Dynamics;
-use acrobot::task::{Draw, Draws};
-use acrobot::{Error, Params, State};
+use acrobot::{Error, Params};
+use lol_alloc::{AssumeSingleThreaded, FreeListAllocator};
+
+#[cfg(target_feature = "atomics")]
+compile_error!("the allocator needs a module with one thread");
+
+/// std's allocator would add 5 KB.
+// SAFETY: a module without atomics has one thread.
+#[global_allocator]
+static ALLOCATOR: AssumeSingleThreaded<FreeListAllocator> =
+    unsafe { AssumeSingleThreaded::new(FreeListAllocator::new()) };
 
 /// Moves a value to the heap, or returns `None` if there is no memory. `Box::new` would panic.
 pub fn keep<T>(value: T) -> Option<Box<T>> {
@@ -51,7 +60,7 @@ pub extern "C" fn words() -> *const u32 {
     WORDS.with(Cell::as_ptr).cast()
 }
 
-fn numbers() -> [f32; LEN] {
+pub fn numbers() -> [f32; LEN] {
     WORDS.get().map(f32::from_bits)
 }
 
@@ -78,30 +87,15 @@ pub fn seed(words: usize) -> SeedSequence {
     SeedSequence::from_words(WORDS.get().get(..words).unwrap_or_default())
 }
 
-pub fn get_state() -> State<f32> {
-    let [theta1, theta2, dtheta1, dtheta2, ..] = numbers();
-    State::from([theta1, theta2, dtheta1, dtheta2])
-}
-
 /// Writes the names of the parameters' numbers.
-#[unsafe(no_mangle)]
-pub extern "C" fn param_names() {
+#[inline] // saves 360 bytes of the module with acrobots, which has the numbers anyway
+pub fn set_param_names() {
     let names = Params::<f32>::DEFAULT.numbers().map(|(name, _)| text(name));
     set(names.as_flattened());
 }
 
-/// Writes the numbers in the order of their names, then that of the dynamics.
-pub fn set_params(params: &Params<f32>) {
-    let dynamics = f32::from(u8::from(params.dynamics == Dynamics::Nips));
-    let mut words = [dynamics.to_bits(); 19];
-    for (word, (_, number)) in words.iter_mut().zip(params.numbers()) {
-        *word = number.to_bits();
-    }
-    set(&words);
-}
-
-/// The parameters with some replaced by what JavaScript has written as [`set_params`] does: those
-/// whose bit is in `mask`.
+/// The parameters with some replaced by what JavaScript has written in the order of their names,
+/// the dynamics last: those whose bit is in `mask`.
 pub fn changed(mut params: Params<f32>, mask: u32) -> Params<f32> {
     let numbers = numbers();
     let is_given = |slot: usize| mask >> slot & 1 != 0;
@@ -114,23 +108,6 @@ pub fn changed(mut params: Params<f32>, mask: u32) -> Params<f32> {
         params.dynamics = if numbers[18] == 0.0 { Dynamics::Book } else { Dynamics::Nips };
     }
     params
-}
-
-/// The draws that JavaScript has written: for each number its kind, and up to four numbers.
-pub fn get_draws() -> Result<Draws<f32>, Error> {
-    let numbers = numbers();
-    let mut draws = Draws::FIXED;
-    for (draw, row) in draws.numbers_mut().into_iter().zip(numbers.as_chunks().0) {
-        let [kind, a, b, low, high] = *row;
-        *draw = match kind as u32 {
-            0 => Draw::Fixed,
-            1 => Draw::AsBefore,
-            2 => Draw::Uniform { low: a, high: b },
-            3 => Draw::LogUniform { low: a, high: b },
-            _ => Draw::Normal { mean: a, std: b, low, high },
-        };
-    }
-    Draws::new(draws)
 }
 
 /// 0, or the kind of error for which numbers are rejected. Then the value, the name, the rule and

@@ -1,0 +1,117 @@
+import type { Params, Seed, State } from "./index.js";
+
+/** Numbers by rows: `matrix[i][j]`. */
+export type Matrix = ArrayLike<ArrayLike<number>>;
+
+/**
+ * x is the deviation from a state [θ1, θ2, θ̇1, θ̇2], rad and rad/s, and u that from a torque, N m.
+ */
+export interface LinearModel {
+  /** A: the derivatives of the results by the state. */
+  readonly a: Matrix;
+  /** B: the derivatives of the results by the torque. */
+  readonly b: ArrayLike<number>;
+}
+
+export interface Regulator {
+  /** K in u = −K x, N m per rad and per rad/s. */
+  gain: Float32Array;
+  /** P by rows: xᵀ P x is the cost of all steps from x on. */
+  costToGo: Float32Array[];
+}
+
+// Parameters that are not given are Gymnasium's, with friction of 0. An invalid argument throws a
+// `RangeError` or `TypeError`.
+
+/** The equations of motion about a state and a torque, N m: ẋ = A x + B u. */
+export function linearize(
+  state: Readonly<State>, torque: number, params: Readonly<Partial<Params>>,
+): LinearModel;
+
+/** One step of `dt` about a state and a torque, N m: x′ = A x + B u. */
+export function linearizeStep(
+  state: Readonly<State>, torque: number, params: Readonly<Partial<Params>>,
+): LinearModel;
+
+/**
+ * The regulator with the least sum of xᵀ Q x + R u² over all steps, about an equilibrium: by
+ * default upright, with a torque of 0. Throws if the state is none, or if there is no such
+ * regulator.
+ */
+export function regulator(
+  params: Readonly<Partial<Params>>, q: Matrix, r: number, state?: Readonly<State>, torque?: number,
+): Regulator;
+
+/** As `regulator`, for any linear model of a step. */
+export function lqr(model: LinearModel, q: Matrix, r: number): Regulator;
+
+/** What a plan costs. A larger weight, of at least 0, makes its term smaller. */
+export interface Cost {
+  /** Of 2 − 2 cos x, for the deviation x of each angle from upright, 1/s. Default: [0, 0]. */
+  angles: readonly [number, number];
+  /** Of the squares of the velocities, s/rad². Default: [0, 0]. */
+  velocities: readonly [number, number];
+  /** Of the square of the torque, 1/((N m)² s). Default: 0.1. */
+  torque: number;
+  /** Of the square of the torque's change from step to step, 1/(N m)². Default: 0. */
+  torqueChange: number;
+  /** Of the absolute value of the motor's power, 1/J. Default: 0. */
+  power: number;
+  /** Of the time that the tip is below `height`, 1/s. Default: 2. */
+  below: number;
+  /** Height of the tip above the fixed joint, m. Default: that of the upright tip. */
+  height: number;
+  /** `below` costs half so far below `height`, m; above 0. Default: a tenth of the height. */
+  margin: number;
+  /** Of the distance at the end from what the regulator holds. Default: 20. */
+  arrival: number;
+}
+
+/** A plan: `torques` has a number for each step, the others have rows of four. */
+export interface Plan {
+  /** The states before the steps. */
+  states: Float32Array;
+  /** N m. */
+  torques: Float32Array;
+  /** What to add to the torque for each deviation from the state, N m per rad and per rad/s. */
+  gains: Float32Array;
+}
+
+export interface PlanOptions {
+  /** The most steps of a plan, from 1. */
+  steps: number;
+  /** The most tries, from 1 to 2^32 − 1. Default: 64. */
+  tries?: number;
+  /** The seed of the first guesses. Default: random. */
+  seed?: Seed;
+}
+
+/** Plans swing-ups, and follows them: bit-identical to Rust's `Planner<Damped<Fast>>`. */
+export class Planner {
+  /**
+   * For a largest torque, N m, and parameters whose `dt` is the time between two decisions. No plan
+   * reaches the bounds of the velocities.
+   */
+  constructor(params: Readonly<Partial<Params>>, limit: number, cost?: Readonly<Partial<Cost>>);
+  /** A plan from a state to upright, or `null` if no try has found one. May take seconds. */
+  plan(start: Readonly<State>, options: PlanOptions): Plan | null;
+  /**
+   * Improves a plan in place, which then begins in the state `start`. Returns its cost: the lower,
+   * the better.
+   */
+  improve(start: Readonly<State>, iterations: number, plan: Plan): number;
+  /** The torque at a step, N m: that of the plan, then that of the regulator. Unlimited. */
+  follow(plan: Plan, step: number, state: Readonly<State>): number;
+  /** The torque without a plan, N m, up to the largest: pumps energy, and then regulates. */
+  decide(state: Readonly<State>): number;
+  /** As that of an acrobot. */
+  free(): void;
+  /** Calls `free()`: for `using`. */
+  [Symbol.dispose](): void;
+}
+
+/** As in `acrobot-rs`, for this file's module. */
+export function moduleBytes(): Uint8Array;
+
+/** As in `acrobot-rs`, for this file's module. */
+export function setModule(module: object): void;

@@ -1,0 +1,194 @@
+// Regulators and a planner, in a separate module. control.d.ts describes the interface.
+
+import {
+  Kept, STATE, accept, allocated, call, checkNumber, checkedState, elements, isFinite32, isNumber,
+  parameters, readSlots, writeSeed, writeSlots,
+} from "./kept.js";
+import {
+  camelCase, checked, integers, invalid, numbers, positive, randomSeed, text, wasm,
+} from "./wasm.js";
+
+export { moduleBytes, setModule } from "./wasm.js";
+
+/** The weights of a plan's cost, in the order of the module: their words follow the parameters. */
+const COST = [
+  "angles[0]", "angles[1]", "velocities[0]", "velocities[1]", "torque", "torqueChange", "power",
+  "below", "height", "margin", "arrival",
+];
+/** The first words of a regulator's weights and of a state. */
+const [WEIGHTS, STATE_WORD] = [20, 64];
+const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
+
+/** Rust's messages, by the kind of error less 4. */
+const MESSAGES = [
+  (value, name) => `${name} must be finite in each element, got ${value}`,
+  (value, name, other) =>
+    `${name} must be symmetric, got ${value} and ${other} on both sides of the diagonal`,
+  (value, name) =>
+    `${name} must be positive semidefinite, got elements of up to ${value} in size after the ` +
+    "elimination of its positive pivots",
+  (value) =>
+    "the state must be in equilibrium, with velocities of 0 and accelerations of at most 0.01 " +
+    `rad/s², got ${value}`,
+  () => "the torque must reach each motion that grows or persists, but does not reach one",
+  () => "q must weight each motion that persists, but does not weight one",
+  (value) => `the relative error of the gain must be at most 1e-9, got ${value}`,
+];
+const NOT_FOUND = 11;
+
+/** As `accept`, with the errors of Rust's `ControlError`. */
+function acceptAll(kind, given) {
+  if (kind < 4) return accept(kind, given);
+  const [value, , , other] = numbers();
+  throw new RangeError(MESSAGES[kind - 4](value, camelCase(text(1)), other));
+}
+
+const row = (what, array) => elements(what, array, 4, isNumber, "must be a number");
+
+const matrix = (what, rows) =>
+  elements(what, rows, 4, () => true).flatMap((each, i) => row(`${what}[${i}]`, each));
+
+function weights(q, r) {
+  checkNumber("r", r);
+  return [...matrix("q", q), r];
+}
+
+/** The matrix and the vector that the module has written. */
+const results = () => [
+  [0, 4, 8, 12].map((from) => numbers().slice(from, from + 4)),
+  numbers().slice(16, 20),
+];
+
+/** Writes a state. It comes after all other arguments, because reading these can run code. */
+function writeState(state) {
+  const given = checkedState(state);
+  numbers().set(STATE.map((name) => given[name]), STATE_WORD);
+  return given;
+}
+
+/** Calls a function of the module for a pendulum. The last of the weights is R. */
+function compute(name, state, torque, params, flag, weights = []) {
+  const names = parameters();
+  const given = readSlots("params", params, names);
+  checkNumber("torque", torque);
+  const at = writeState(state);
+  const mask = writeSlots(given, names);
+  numbers().set(weights, WEIGHTS);
+  acceptAll(wasm()[name](mask, torque, flag), { ...given, ...at, torque, r: weights.at(-1) });
+  return results();
+}
+
+export function linearize(state, torque, params) {
+  const [a, b] = compute("linear_model", state, torque, params, false);
+  return { a, b };
+}
+
+export function linearizeStep(state, torque, params) {
+  const [a, b] = compute("linear_model", state, torque, params, true);
+  return { a, b };
+}
+
+export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
+  const [costToGo, gain] = compute("regulator", state, torque, params, false, weights(q, r));
+  return { gain, costToGo };
+}
+
+export function lqr(model, q, r) {
+  const words = [...matrix("a", model?.a), ...row("b", model?.b), ...weights(q, r)];
+  numbers().set(words);
+  acceptAll(wasm().regulator(0, 0, true), { r });
+  const [costToGo, gain] = results();
+  return { gain, costToGo };
+}
+
+function lengthOf(plan) {
+  const length = plan?.torques?.length;
+  if (length === undefined) throw invalid("plan must be one that a planner returns", plan, []);
+  return length;
+}
+
+/** The arrays of a plan, with their elements for a step: a row in the module. */
+const PLAN = { states: 4, torques: 1, gains: 4 };
+
+function rowOf(plan, step) {
+  const row = Object.entries(PLAN).flatMap(([name, size]) =>
+    Array.from({ length: size }, (_, i) => plan[name]?.[size * step + i]),
+  );
+  return elements(`plan[${step}]`, row, 9, isFinite32, "must be a finite number");
+}
+
+export class Planner extends Kept {
+  constructor(params, limit, cost = {}) {
+    const names = parameters();
+    const given = { ...readSlots("params", params, names), ...readSlots("cost", cost, COST) };
+    const what = "the largest torque";
+    checkNumber(what, limit);
+    const mask = writeSlots(given, [...names, ...COST]);
+    acceptAll(wasm().planner_new(mask, limit), { ...given, [what]: limit });
+    super("planner", allocated("planners", 1, integers()[0]));
+  }
+
+  #resize(steps) {
+    allocated("steps", steps, call(this, "resize", steps));
+  }
+
+  /** Copies the module's plan to the arrays of one. */
+  #read(plan, steps) {
+    for (let step = 0; step < steps; step++) {
+      call(this, "read", step);
+      let from = 0;
+      for (const [name, size] of Object.entries(PLAN)) {
+        for (let i = 0; i < size; i++) plan[name][size * step + i] = numbers()[from++];
+      }
+    }
+  }
+
+  plan(start, options) {
+    const given = checked("options", options, ["tries", "seed", "steps"]);
+    const { tries = 64, seed = randomSeed(), steps } = given;
+    positive("tries", tries);
+    positive("steps", steps);
+    const state = writeState(start);
+    this.#resize(steps);
+    const kind = call(this, "plan", writeSeed(seed), tries);
+    if (kind === NOT_FOUND) return null;
+    acceptAll(kind, state);
+    const [length] = integers();
+    const [states, gains] = [4, 4].map((size) => new Float32Array(size * length));
+    const plan = { states, torques: new Float32Array(length), gains };
+    this.#read(plan, length);
+    return plan;
+  }
+
+  improve(start, iterations, plan) {
+    positive("iterations", iterations);
+    const rows = Array.from({ length: lengthOf(plan) }, (_, step) => rowOf(plan, step));
+    const state = writeState(start);
+    this.#resize(rows.length);
+    rows.forEach((row, step) => {
+      numbers().set(row);
+      call(this, "set", step);
+    });
+    acceptAll(call(this, "improve", iterations), state);
+    const [cost] = numbers();
+    this.#read(plan, rows.length);
+    return cost;
+  }
+
+  follow(plan, step, state) {
+    if (!Number.isInteger(step) || step < 0) {
+      throw invalid("step must be an integer of at least 0", step);
+    }
+    const isPlanned = step < lengthOf(plan);
+    const row = isPlanned ? rowOf(plan, step) : [];
+    writeState(state);
+    numbers().set(row);
+    return call(this, "follow", isPlanned);
+  }
+
+  decide(state) {
+    const at = writeState(state);
+    acceptAll(call(this, "decide"), at);
+    return numbers()[0];
+  }
+}
