@@ -142,6 +142,7 @@ pub(super) fn is_below<S: Real>(state: State<S>, [bound1, bound2]: [S; 2]) -> bo
 }
 
 /// U with P = Uᵀ U for a symmetric, positive definite P.
+#[expect(clippy::indexing_slicing, reason = "the indices of `from_fn` are below 4")]
 fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
     array::from_fn(|i| {
         let root = Real::sqrt(p[i][i]);
@@ -154,6 +155,7 @@ fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
 }
 
 /// The largest k x where |U x| ≤ 1: |y| for Uᵀ y = k.
+#[expect(clippy::indexing_slicing, reason = "the indices of `from_fn` are below 4")]
 fn largest(u: &[[f64; 4]; 4], mut k: [f64; 4]) -> f64 {
     let y = array::from_fn(|i| {
         let y = k[i] / u[i][i];
