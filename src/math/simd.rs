@@ -1,7 +1,7 @@
 //! SIMD instructions that are detected at run time.
 
-/// The SIMD instructions that a step of a [`Batch`](crate::batch::Batch) or a
-/// [search](crate::control::Planner::search) uses. They change no bit.
+/// The SIMD instructions that a step of a [`Batch`](crate::batch::Batch) or plans side by side use.
+/// They change no bit.
 ///
 /// With the `std` feature on x86-64 they are the widest that the machine has. Elsewhere there
 /// is only the baseline, such as WASM's simd128 or NEON.

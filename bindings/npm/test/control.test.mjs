@@ -136,8 +136,7 @@ test("invalid arguments are rejected with Rust's messages", () => {
     ["RangeError", "the relative error of the gain must be at most 1e-9",
       ["1.1920928955078125e-7", model(1e9, 3)]],
     ["RangeError", "the largest torque must be finite and above 0 N m", ["-0.3", make(-0.3)]],
-    ["RangeError", "angles must be finite and at least 0 per s",
-      ["-0.1", make(1, { angles: [0, -0.1] })]],
+    ["RangeError", "height must be a finite number of m", ["NaN", make(1, { height: NaN })]],
     ["TypeError", "steps must be an integer from 1 to 2^32 - 1",
       ["undefined", () => planner.plan(HANGING, {})]],
     ["RangeError", "steps must fit into WebAssembly's memory of at most 4 GiB",
@@ -154,6 +153,13 @@ test("invalid arguments are rejected with Rust's messages", () => {
   ];
   assertRejected(rows);
   const throws = (call, message) => assert.throws(call, { name: "RangeError", message });
+  const [one, two] = [-0.1, [-0.1, -0.2]];
+  const single = { torque: one, torqueChange: one, power: one, below: one, margin: one };
+  const weights = { ...single, arrival: one, angles: two, velocities: two };
+  for (const [name, weight] of Object.entries(weights)) {
+    const message = new RegExp(`^${name} must be finite and .*, got -0.1$`);
+    throws(make(1, { [name]: weight }), message);
+  }
   const reach = "the torque must reach each motion that grows or persists, but does not reach one";
   throws(model(2, 0), reach);
   throws(model(1, 1), "q must weight each motion that persists, but does not weight one");

@@ -72,8 +72,10 @@ fn swing_up(params: Params<f32>, cost: Cost<f32>) -> anyhow::Result<(String, Str
     for i in 0..steps {
         let torque = saturate(planner.follow(&plan, i, machine.state()), LIMIT);
         let x = 40.0 + 400.0 * i as f32 / steps as f32;
-        heights += &format!("{x:.0},{:.1} ", 70.0 - 30.0 * machine.tip_height());
-        torques += &format!("{x:.0},{:.1} ", 190.0 - 8.0 * torque);
+        if i % 3 == 0 {
+            heights += &format!("{x:.0},{:.0} ", 70.0 - 30.0 * machine.tip_height());
+            torques += &format!("{x:.0},{:.0} ", 190.0 - 8.0 * torque);
+        }
         machine.step(torque)?;
     }
     Ok((heights, torques))
