@@ -93,7 +93,7 @@ def test_errors_say_what_is_valid(function, arguments, message):
 def test_a_plan_swings_an_environment_up_from_a_nearby_state(friction):
     env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, FRICTION_1=friction, AVAIL_TORQUE=(-8, 0, 8))
     planner = control.Planner(6.0, env)
-    plan = planner.plan([0, 0, 0, 0], steps=400)
+    plan = planner.plan([0, 0, 0, 0], steps=250)
     env.reset(options={"state": [0.05, -0.05, 0.1, 0.1]})
     for step in range(len(plan.torques) + 500):
         env.step([planner.follow(plan, step, env.state)])

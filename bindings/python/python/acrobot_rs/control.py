@@ -147,7 +147,7 @@ class Planner:
         seed: int = 0,
         progress: Callable[[int], object] | None = None,
     ) -> Plan:
-        """A plan of at most so many steps, after which the regulator holds upright.
+        """A plan of at most ``steps``, up to 65,535, after which the regulator holds upright.
 
         A seed gives the same plan everywhere. After each 40 tries, which are one ``search`` of
         Rust's, ``progress`` is called with the number of all so far, and Ctrl-C acts. A
