@@ -15,13 +15,13 @@ use acrobot::{Acrobot, Fast, Params, State};
 
 use crate::Episode;
 
-const GUESSES: usize = 160;
+const GUESSES: usize = 128;
 /// After a few iterations the best of them are planned until no iteration helps.
 const FEW: u32 = 25;
 const ALL: u32 = 150;
 const KEPT: usize = 16;
 /// In each round the best plans are changed, later only the best one, with so many iterations.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 20;
 const CHANGED: usize = 4;
 const CHANGES: usize = 16;
 const ITERATIONS: u32 = 50;
