@@ -204,9 +204,10 @@ fn alone_or_in_a_lane<A: Arithmetic>(params: Params<A::Scalar>) -> Result<(), Bo
 /// Where a simulation clamps, a plan may reach a bound.
 #[test]
 fn no_velocity_of_a_plan_reaches_its_bound() -> Result<(), Box<dyn Error>> {
-    let params = Params { dt: 0.02, max_velocity1: 4.0, max_velocity2: 7.0, ..Params::DEFAULT };
+    let params = Params { dt: 0.02, max_velocity1: 5.0, max_velocity2: 9.0, ..Params::DEFAULT };
     let fastest = |mut planner: Planner<Fast>| {
-        let plan = planner.search(State::HANGING, 256, &mut Pcg64::new(1), 300)?;
+        let mut memory = [Knot::EMPTY; 200];
+        let plan = planner.plan(State::HANGING, 64, &mut Pcg64::new(1), &mut memory)?;
         let states = plan.iter().map(|knot| knot.state);
         Ok::<_, NoPlan>(states.fold([0.0_f32; 2], |[first, second], state| {
             [first.max(state.dtheta1.abs()), second.max(state.dtheta2.abs())]
@@ -214,9 +215,9 @@ fn no_velocity_of_a_plan_reaches_its_bound() -> Result<(), Box<dyn Error>> {
     };
     let cost = Cost::new(&params);
     let [first, second] = fastest(Planner::with_cost(params, 12.0, cost)?)?;
-    assert!(first < 4.0 && second < 7.0, "{first} {second}");
+    assert!(first < 5.0 && second < 9.0, "{first} {second}");
     let [first, second] = fastest(Planner::for_simulation(params, 12.0, cost)?)?;
-    assert!(first == 4.0 || second == 7.0, "{first} {second}");
+    assert!(first == 5.0 || second == 9.0, "{first} {second}");
     Ok(())
 }
 
