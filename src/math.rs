@@ -5,7 +5,6 @@ mod real;
 mod simd;
 pub mod sines;
 
-pub(crate) use lanes::Lanewise;
 pub use lanes::{Lanes, Numbers};
 pub(crate) use real::sealed;
 pub use real::{Real, SinCos};

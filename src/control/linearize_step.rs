@@ -5,7 +5,7 @@ use super::linearize::{LinearModel, partials};
 use super::matrix::{check_finite, dot, transpose};
 use crate::arithmetic::Arithmetic;
 use crate::math::sealed::Sealed as _;
-use crate::math::{Lanes, Lanewise, Real, SinCos};
+use crate::math::{Lanes, Numbers, Real, SinCos};
 use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
 
 /// Linearizes one step of `dt` about the pendulum's state and a torque, N m, which is constant

@@ -11,7 +11,7 @@ use super::plan::Knot;
 use super::recovery::Recovery;
 use crate::arithmetic::Arithmetic;
 use crate::math::sealed::Sealed as _;
-use crate::math::{Kernel, Lanewise, Real, SinCos};
+use crate::math::{Kernel, Numbers, Real, SinCos};
 use crate::physics::{Model, State, plus_scaled, saturate, step, wrap};
 
 /// What the passes know of the machine.
@@ -54,7 +54,7 @@ pub(super) struct Forward<'a, A: Arithmetic, V> {
     pub(super) motion: &'a mut Motion<V>,
 }
 
-impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Forward<'_, A, V> {
+impl<A: Arithmetic, V: Numbers<A::Scalar>> Kernel for Forward<'_, A, V> {
     #[inline(always)]
     fn run<const AVX512: bool>(self) {
         let Machine { model, recovery, weights } = self.machine;
@@ -68,7 +68,7 @@ impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Forward<'_, A, V> {
         for knot in self.knots {
             let mut kept = *knot;
             let mut torques = motion.torque;
-            for i in 0..V::N {
+            for i in 0..V::LEN {
                 let old = kept.lane(i);
                 let y = lanes(&motion.y, i);
                 let [x1, x2, x3, x4]: [A::Scalar; 4] = old.state.into();
@@ -97,7 +97,7 @@ impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Forward<'_, A, V> {
             motion.torque = torques;
             step::<A, V>(&lanes_model, &mut motion.y, &mut motion.sin_cos, torques);
             index = index + A::Scalar::ONE;
-            for i in 0..V::N {
+            for i in 0..V::LEN {
                 let is_end = index == orders.len.lane(i);
                 let pick = |new, old| if is_end { new } else { old };
                 for (end, y) in ends.iter_mut().zip(&motion.y) {
@@ -106,7 +106,7 @@ impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Forward<'_, A, V> {
                 costs.set_lane(i, pick(motion.cost.lane(i), costs.lane(i)));
             }
         }
-        for i in 0..V::N {
+        for i in 0..V::LEN {
             let arrival = recovery.arrival(arrival, lanes(&ends, i));
             costs.set_lane(i, costs.lane(i) + arrival);
         }
@@ -131,7 +131,7 @@ pub(super) struct Backward<'a, A: Arithmetic, V> {
 /// and the slope and the curvature by that torque.
 type ToGo<V> = [V; 20];
 
-impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Backward<'_, A, V> {
+impl<A: Arithmetic, V: Numbers<A::Scalar>> Kernel for Backward<'_, A, V> {
     #[inline(always)]
     fn run<const AVX512: bool>(self) {
         let Machine { model, recovery, weights } = self.machine;
@@ -147,7 +147,7 @@ impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Backward<'_, A, V> {
             let before = earlier.last().unwrap_or(knot).torque;
             // The first torque may jump.
             let jumps = if earlier.is_empty() { A::Scalar::ZERO } else { by_jump };
-            for i in 0..V::N {
+            for i in 0..V::LEN {
                 if index == len.lane(i) {
                     let end = lanes(self.ends, i);
                     set_lanes(&mut to_go, i, recovery.arrival_slopes(arrival, end));
@@ -155,13 +155,13 @@ impl<A: Arithmetic, V: Lanewise<A::Scalar>> Kernel for Backward<'_, A, V> {
                 }
             }
             let mut changed = *knot;
-            for i in 0..V::N {
+            for i in 0..V::LEN {
                 let rest = lanes(&to_go, i);
                 let lowest = least.lane(i);
                 let old = changed.lane(i);
                 let jump = Jump { before: before.lane(i), weight: jumps };
                 let damping = dampings.lane(i);
-                let (new, now, divisor) = match V::N {
+                let (new, now, divisor) = match V::LEN {
                     1 => look_back::<A, false>(&local, &old, &jump, &rest, damping),
                     _ => look_back::<A, true>(&local, &old, &jump, &rest, damping),
                 };
@@ -273,7 +273,7 @@ fn look_back<A: Arithmetic, const IN_LANES: bool>(
 
 /// Lane `i` of some numbers.
 #[inline(always)]
-pub(super) fn lanes<S: Real, V: Lanewise<S>, const K: usize>(x: &[V; K], i: usize) -> [S; K] {
+pub(super) fn lanes<S: Real, V: Numbers<S>, const K: usize>(x: &[V; K], i: usize) -> [S; K] {
     let mut lanes = [S::ZERO; K];
     for (lane, x) in lanes.iter_mut().zip(x) {
         *lane = x.lane(i);
@@ -282,7 +282,7 @@ pub(super) fn lanes<S: Real, V: Lanewise<S>, const K: usize>(x: &[V; K], i: usiz
 }
 
 #[inline(always)]
-pub(super) fn set_lanes<S: Real, V: Lanewise<S>, const K: usize>(
+pub(super) fn set_lanes<S: Real, V: Numbers<S>, const K: usize>(
     places: &mut [V; K],
     i: usize,
     x: [S; K],
@@ -293,6 +293,6 @@ pub(super) fn set_lanes<S: Real, V: Lanewise<S>, const K: usize>(
 }
 
 #[inline(always)]
-fn pair<S: Real, V: Lanewise<S>>((sin, cos): &SinCos<V>, i: usize) -> SinCos<S> {
+fn pair<S: Real, V: Numbers<S>>((sin, cos): &SinCos<V>, i: usize) -> SinCos<S> {
     (sin.lane(i), cos.lane(i))
 }

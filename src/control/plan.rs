@@ -5,7 +5,7 @@ use core::fmt;
 use super::deviation::difference;
 use super::error::ControlError;
 use super::matrix::dot;
-use crate::math::{Lanewise, Real};
+use crate::math::{Numbers, Real};
 use crate::physics::State;
 
 /// A step of a plan.
@@ -51,7 +51,7 @@ impl<V> Knot<V> {
     #[inline(always)]
     pub(super) fn lane<S: Real>(&self, i: usize) -> Knot<S>
     where
-        V: Lanewise<S>,
+        V: Numbers<S>,
     {
         let State { theta1, theta2, dtheta1, dtheta2 } = &self.state;
         let [k1, k2, k3, k4] = &self.gain;
@@ -68,7 +68,7 @@ impl<V> Knot<V> {
     #[inline(always)]
     pub(super) fn set_lane<S: Real>(&mut self, i: usize, knot: Knot<S>)
     where
-        V: Lanewise<S>,
+        V: Numbers<S>,
     {
         self.state.theta1.set_lane(i, knot.state.theta1);
         self.state.theta2.set_lane(i, knot.state.theta2);

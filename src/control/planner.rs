@@ -21,7 +21,7 @@ use super::matrix::{dot, identity, transpose};
 use super::passes::Machine;
 use super::plan::{Knot, NoPlan};
 use super::recovery::{Recovery, is_below, is_near};
-use super::tries::{self, Plans};
+use super::tries;
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::sealed::Sealed as _;
@@ -223,10 +223,20 @@ impl<A: Arithmetic> Planner<A> {
         iterations: u32,
         plan: &mut [Knot<A::Scalar>],
     ) -> (A::Scalar, State<A::Scalar>) {
-        let mut one = One { len: Some(plan.len()), cost: A::Scalar::ZERO, end: start };
-        let level = SimdLevel::Baseline;
-        tries::improve::<A, A::Scalar>(self.machine(), level, start, iterations, plan, &mut one);
-        (one.cost, one.end)
+        let (mut len, mut result) = (Some(plan.len()), (A::Scalar::ZERO, start));
+        tries::improve::<A, A::Scalar>(
+            self.machine(),
+            SimdLevel::Baseline,
+            start,
+            iterations,
+            plan,
+            |_, _| len.take(),
+            |done| {
+                result = (done.cost, done.end);
+                false
+            },
+        );
+        result
     }
 
     fn machine(&self) -> Machine<'_, A> {
@@ -316,23 +326,5 @@ impl<A: Arithmetic> Planner<A> {
     /// Sets the SIMD instructions that plans side by side use: the widest by default.
     pub fn set_simd_level(&mut self, level: SimdLevel) {
         self.level = level;
-    }
-}
-
-/// One plan alone.
-struct One<S> {
-    len: Option<usize>,
-    cost: S,
-    end: State<S>,
-}
-
-impl<S: Real> Plans<S, S> for One<S> {
-    fn next(&mut self, _: &mut [Knot<S>], _: usize) -> Option<usize> {
-        self.len.take()
-    }
-
-    fn take(&mut self, _: &[Knot<S>], _: usize, cost: S, end: State<S>) -> bool {
-        (self.cost, self.end) = (cost, end);
-        false
     }
 }

@@ -9,7 +9,7 @@ use super::passes::{Backward, Forward, Machine, Motion, Orders, lanes, set_lanes
 use super::plan::Knot;
 use crate::arithmetic::Arithmetic;
 use crate::math::sealed::Sealed as _;
-use crate::math::{Lanewise, Real, SimdLevel};
+use crate::math::{Numbers, Real, SimdLevel};
 use crate::physics::{State, sin_cos};
 
 /// An iteration counts as stalled if it lowers the cost by less than this part, or not at all. So
@@ -37,6 +37,8 @@ enum Phase {
 #[derive(Clone, Copy, Debug)]
 struct Try<S> {
     phase: Phase,
+    /// How many plans began before it.
+    index: usize,
     cost: S,
     damping: S,
     /// The part of the change that is tried.
@@ -46,30 +48,35 @@ struct Try<S> {
     stalled: u32,
 }
 
-/// Plans to improve.
-pub(super) trait Plans<S, V> {
-    /// Writes the next plan into a lane. Returns its length, or `None` if there is no other.
-    fn next(&mut self, knots: &mut [Knot<V>], lane: usize) -> Option<usize>;
-
-    /// Takes an improved plan, with its cost and the state after it. No cost is finite if the
-    /// numbers overflow. Returns whether to go on.
-    fn take(&mut self, knots: &[Knot<V>], lane: usize, cost: S, end: State<S>) -> bool;
+/// A plan that is done. No cost is finite if the numbers overflow.
+pub(super) struct Done<'a, S, V> {
+    /// How many plans came before it.
+    pub(super) index: usize,
+    pub(super) knots: &'a [Knot<V>],
+    pub(super) lane: usize,
+    pub(super) cost: S,
+    /// The state after the plan.
+    pub(super) end: State<S>,
 }
 
-/// Improves all plans from a state, each by at most so many iterations.
+/// Improves plans from a state, each by at most so many iterations. `next` writes the next plan into
+/// a lane, and returns its length, or `None` if there is no other. `take` takes a plan that is done,
+/// and returns whether to go on.
 #[inline(never)]
-pub(super) fn improve<A: Arithmetic, V: Lanewise<A::Scalar>>(
+pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
     machine: Machine<'_, A>,
     level: SimdLevel,
     start: State<A::Scalar>,
     iterations: u32,
     knots: &mut [Knot<V>],
-    plans: &mut impl Plans<A::Scalar, V>,
+    mut next: impl FnMut(&mut [Knot<V>], usize) -> Option<usize>,
+    mut take: impl FnMut(Done<'_, A::Scalar, V>) -> bool,
 ) {
     let number = A::Scalar::from_f64;
     let [zero, one] = [A::Scalar::ZERO, A::Scalar::ONE];
     let new = Try {
         phase: Phase::Idle,
+        index: 0,
         cost: zero,
         damping: number(DAMPING),
         part: zero,
@@ -90,15 +97,16 @@ pub(super) fn improve<A: Arithmetic, V: Lanewise<A::Scalar>>(
         cost: V::splat(zero),
     };
     let mut orders = Orders { len: V::splat(zero), part: V::splat(zero), keep: V::splat(zero) };
-    let mut ends = first.y;
+    let (mut ends, mut begun) = (first.y, 0);
     loop {
         let mut active = 0;
         for (i, plan) in tries.iter_mut().enumerate() {
             if plan.phase == Phase::Idle
-                && let Some(len) = plans.next(knots, i)
+                && let Some(len) = next(knots, i)
             {
                 orders.len.set_lane(i, number(len as f64));
-                *plan = Try { phase: Phase::Keeps, ..new };
+                *plan = Try { phase: Phase::Keeps, index: begun, ..new };
+                begun += 1;
             }
             active += usize::from(plan.phase != Phase::Idle);
             orders.part.set_lane(i, plan.part);
@@ -147,7 +155,15 @@ pub(super) fn improve<A: Arithmetic, V: Lanewise<A::Scalar>>(
             let is_over = plan.iterations >= iterations || plan.stalled > STALLED;
             if plan.phase == Phase::Waits && (is_over || !plan.cost.is_finite()) {
                 plan.phase = Phase::Idle;
-                if !plans.take(knots, i, plan.cost, lanes(&ends, i).into()) {
+                let len = orders.len.lane(i).to_f64() as usize;
+                let done = Done {
+                    index: plan.index,
+                    knots: knots.get(..len).unwrap_or(knots),
+                    lane: i,
+                    cost: plan.cost,
+                    end: lanes(&ends, i).into(),
+                };
+                if !take(done) {
                     return;
                 }
             }

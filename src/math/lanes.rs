@@ -27,6 +27,29 @@ pub trait Numbers<S: Real>:
     /// Whether this is a single number.
     const IS_ONE: bool;
 
+    /// How many numbers.
+    #[doc(hidden)]
+    const LEN: usize;
+
+    /// A value for each lane.
+    #[doc(hidden)]
+    type Each<T: Copy + fmt::Debug>: AsMut<[T]>;
+
+    /// `x` for each lane.
+    #[doc(hidden)]
+    fn each<T: Copy + fmt::Debug>(x: T) -> Self::Each<T>;
+
+    /// The number of lane `i`, which must be below `LEN`.
+    ///
+    /// A loop over the lanes around code for one number vectorizes however long that code is. Of
+    /// operations with [`Lanes`], LLVM keeps the results in memory where the code is long.
+    #[doc(hidden)]
+    fn lane(&self, i: usize) -> S;
+
+    /// Sets the number of lane `i`, which must be below `LEN`.
+    #[doc(hidden)]
+    fn set_lane(&mut self, i: usize, x: S);
+
     /// `x` in each lane.
     fn splat(x: S) -> Self;
 
@@ -79,7 +102,24 @@ pub trait Numbers<S: Real>:
 impl<S: Real> Numbers<S> for S {
     type Mask = bool;
     type Single = f32;
+    type Each<T: Copy + fmt::Debug> = [T; 1];
     const IS_ONE: bool = true;
+    const LEN: usize = 1;
+
+    #[inline(always)]
+    fn each<T: Copy + fmt::Debug>(x: T) -> [T; 1] {
+        [x]
+    }
+
+    #[inline(always)]
+    fn lane(&self, _: usize) -> S {
+        *self
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, _: usize, x: S) {
+        *self = x;
+    }
 
     #[inline(always)]
     fn splat(x: S) -> Self {
@@ -151,7 +191,26 @@ impl<S: Real, const N: usize> Neg for Lanes<S, N> {
 impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     type Mask = [bool; N];
     type Single = Lanes<f32, N>;
+    type Each<T: Copy + fmt::Debug> = [T; N];
     const IS_ONE: bool = false;
+    const LEN: usize = N;
+
+    #[inline(always)]
+    fn each<T: Copy + fmt::Debug>(x: T) -> [T; N] {
+        [x; N]
+    }
+
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "the callers' loops end below N")]
+    fn lane(&self, i: usize) -> S {
+        self.0[i]
+    }
+
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "the callers' loops end below N")]
+    fn set_lane(&mut self, i: usize, x: S) {
+        self.0[i] = x;
+    }
 
     #[inline(always)]
     fn splat(x: S) -> Self {
@@ -210,67 +269,5 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
             *number = if mask { yes } else { no };
         }
         Self(numbers)
-    }
-}
-
-/// Numbers that can be read one by one.
-///
-/// A loop over the lanes around code for one number vectorizes however long that code is. Of
-/// operations with [`Lanes`], LLVM keeps the results in memory where the code is long.
-pub(crate) trait Lanewise<S: Real>: Numbers<S> {
-    /// A value for each lane.
-    type Each<T: Copy + fmt::Debug>: AsRef<[T]> + AsMut<[T]>;
-
-    /// The number of lanes.
-    const N: usize;
-
-    /// `x` for each lane.
-    fn each<T: Copy + fmt::Debug>(x: T) -> Self::Each<T>;
-
-    /// The number of lane `i`, which must be below `N`.
-    fn lane(&self, i: usize) -> S;
-
-    /// Sets the number of lane `i`, which must be below `N`.
-    fn set_lane(&mut self, i: usize, x: S);
-}
-
-impl<S: Real> Lanewise<S> for S {
-    type Each<T: Copy + fmt::Debug> = [T; 1];
-    const N: usize = 1;
-
-    #[inline(always)]
-    fn each<T: Copy + fmt::Debug>(x: T) -> [T; 1] {
-        [x]
-    }
-
-    #[inline(always)]
-    fn lane(&self, _: usize) -> S {
-        *self
-    }
-
-    #[inline(always)]
-    fn set_lane(&mut self, _: usize, x: S) {
-        *self = x;
-    }
-}
-
-#[expect(clippy::indexing_slicing, reason = "the callers' loops end below N")]
-impl<S: Real, const N: usize> Lanewise<S> for Lanes<S, N> {
-    type Each<T: Copy + fmt::Debug> = [T; N];
-    const N: usize = N;
-
-    #[inline(always)]
-    fn each<T: Copy + fmt::Debug>(x: T) -> [T; N] {
-        [x; N]
-    }
-
-    #[inline(always)]
-    fn lane(&self, i: usize) -> S {
-        self.0[i]
-    }
-
-    #[inline(always)]
-    fn set_lane(&mut self, i: usize, x: S) {
-        self.0[i] = x;
     }
 }

@@ -7,7 +7,7 @@ use rand_core::Rng;
 
 use super::super::error::ControlError;
 use super::super::plan::{Knot, NoPlan};
-use super::super::tries::{self, Plans};
+use super::super::tries::{self, Done};
 use super::{ITERATIONS, Planner};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
@@ -38,31 +38,33 @@ impl<A: Arithmetic> Planner<A> {
     ) -> Result<Vec<Knot<A::Scalar>>, NoPlan> {
         start.validate()?;
         let mut guesser = self.clone();
-        let mut guess = |plan: &mut [Knot<A::Scalar>]| guesser.guess(start, rng, plan).is_ok();
-        let mut search = Search {
-            planner: self,
-            guess: &mut guess,
-            left: tries,
-            tries: 0,
-            steps,
-            plan: vec![Knot::EMPTY; steps],
-            lens: [0; LANES],
-            found: false,
+        let (mut tried, mut guess, mut found) = (0, Vec::new(), None);
+        let next = |knots: &mut [Knot<Side<A::Scalar>>], lane| {
+            while tried < tries as usize {
+                let len = steps * (1 + tried / OF_A_LENGTH % 10) / 10;
+                tried += 1;
+                guess.resize(len, Knot::EMPTY);
+                // Extreme parameters can make a guess overflow.
+                if guesser.guess(start, rng, &mut guess).is_ok() {
+                    set_plan(knots, lane, &guess);
+                    return Some(len);
+                }
+            }
+            None
+        };
+        let take = |done: Done<'_, A::Scalar, Side<A::Scalar>>| {
+            if done.cost.is_finite() && self.catches(done.end) {
+                let plan: Vec<_> = done.knots.iter().map(|knot| knot.lane(done.lane)).collect();
+                found = self.is_success(&plan, done.end).then_some(plan);
+            }
+            found.is_none()
         };
         let mut knots = vec![empty(); steps];
-        let (machine, level) = (self.machine(), self.level);
-        tries::improve::<A, Side<A::Scalar>>(
-            machine,
-            level,
-            start,
-            ITERATIONS,
-            &mut knots,
-            &mut search,
-        );
-        let Search { found, mut plan, .. } = search;
+        let machine = self.machine();
+        tries::improve::<A, _>(machine, self.level, start, ITERATIONS, &mut knots, next, take);
         match found {
-            true => self.track(&mut plan).map(|()| plan).map_err(NoPlan::Invalid),
-            false => Err(NoPlan::NotFound { tries }),
+            Some(mut plan) => self.track(&mut plan).map(|()| plan).map_err(NoPlan::Invalid),
+            None => Err(NoPlan::NotFound { tries }),
         }
     }
 
@@ -80,15 +82,30 @@ impl<A: Arithmetic> Planner<A> {
         start.validate()?;
         let longest = plans.iter().map(Vec::len).max().unwrap_or(0);
         let mut costs = vec![A::Scalar::ZERO; plans.len()];
-        let mut all = All { plans, costs: &mut costs, next: 0, lanes: [0; LANES] };
+        let (given, mut begun) = (plans.to_vec(), 0);
+        let next = |knots: &mut [Knot<Side<A::Scalar>>], lane| {
+            let plan = given.get(begun)?;
+            begun += 1;
+            set_plan(knots, lane, plan);
+            Some(plan.len())
+        };
+        let take = |done: Done<'_, A::Scalar, Side<A::Scalar>>| {
+            let places = plans.get_mut(done.index).into_iter().flatten();
+            places.zip(done.knots).for_each(|(place, knot)| *place = knot.lane(done.lane));
+            if let Some(place) = costs.get_mut(done.index) {
+                *place = done.cost;
+            }
+            true
+        };
         let mut knots = vec![empty(); longest];
-        tries::improve::<A, Side<A::Scalar>>(
+        tries::improve::<A, _>(
             self.machine(),
             self.level,
             start,
             iterations,
             &mut knots,
-            &mut all,
+            next,
+            take,
         );
         let finish = |(cost, plan): (_, &mut Vec<_>)| self.finish(cost, plan);
         Ok(costs.into_iter().zip(plans).map(finish).collect())
@@ -101,85 +118,7 @@ fn empty<S: Real>() -> Knot<Side<S>> {
     Knot { state, torque: zero, gain: [zero; 4], change: zero, smooth: zero }
 }
 
-/// Fills a plan; false if the numbers overflow.
-type Guess<'a, S> = dyn FnMut(&mut [Knot<S>]) -> bool + 'a;
-
-/// Tries until one succeeds.
-struct Search<'a, A: Arithmetic> {
-    planner: &'a Planner<A>,
-    guess: &'a mut Guess<'a, A::Scalar>,
-    left: u32,
-    tries: usize,
-    steps: usize,
-    plan: Vec<Knot<A::Scalar>>,
-    /// Of the plans in the lanes.
-    lens: [usize; LANES],
-    found: bool,
-}
-
-impl<A: Arithmetic> Plans<A::Scalar, Side<A::Scalar>> for Search<'_, A> {
-    fn next(&mut self, knots: &mut [Knot<Side<A::Scalar>>], lane: usize) -> Option<usize> {
-        while self.left > 0 {
-            self.left -= 1;
-            let len = self.steps * (1 + self.tries / OF_A_LENGTH % 10) / 10;
-            self.tries += 1;
-            self.plan.resize(len, Knot::EMPTY);
-            // Extreme parameters can make a guess overflow.
-            if (self.guess)(&mut self.plan) {
-                for (place, knot) in knots.iter_mut().zip(&self.plan) {
-                    place.set_lane(lane, *knot);
-                }
-                *self.lens.get_mut(lane)? = len;
-                return Some(len);
-            }
-        }
-        None
-    }
-
-    fn take(
-        &mut self,
-        knots: &[Knot<Side<A::Scalar>>],
-        lane: usize,
-        cost: A::Scalar,
-        end: State<A::Scalar>,
-    ) -> bool {
-        if cost.is_finite() && self.planner.catches(end) {
-            self.plan.clear();
-            let len = self.lens.get(lane).copied().unwrap_or(0);
-            self.plan.extend(knots.iter().take(len).map(|knot| knot.lane(lane)));
-            self.found = self.planner.is_success(&self.plan, end);
-        }
-        !self.found
-    }
-}
-
-/// All plans of a list.
-struct All<'a, S> {
-    plans: &'a mut [Vec<Knot<S>>],
-    costs: &'a mut [S],
-    next: usize,
-    /// Which plans are in the lanes.
-    lanes: [usize; LANES],
-}
-
-impl<S: Real> Plans<S, Side<S>> for All<'_, S> {
-    fn next(&mut self, knots: &mut [Knot<Side<S>>], lane: usize) -> Option<usize> {
-        let plan = self.plans.get(self.next)?;
-        for (place, knot) in knots.iter_mut().zip(plan) {
-            place.set_lane(lane, *knot);
-        }
-        *self.lanes.get_mut(lane)? = self.next;
-        self.next += 1;
-        Some(plan.len())
-    }
-
-    fn take(&mut self, knots: &[Knot<Side<S>>], lane: usize, cost: S, _: State<S>) -> bool {
-        let index = self.lanes.get(lane).copied().unwrap_or(0);
-        let places = self.plans.get_mut(index).into_iter().flatten();
-        places.zip(knots).for_each(|(place, knot)| *place = knot.lane(lane));
-        if let Some(place) = self.costs.get_mut(index) {
-            *place = cost;
-        }
-        true
-    }
+/// Writes a plan into a lane.
+fn set_plan<S: Real>(knots: &mut [Knot<Side<S>>], lane: usize, plan: &[Knot<S>]) {
+    knots.iter_mut().zip(plan).for_each(|(place, knot)| place.set_lane(lane, *knot));
 }
