@@ -231,8 +231,8 @@ impl<A: Arithmetic> Planner<A> {
             iterations,
             plan,
             |_, _| len.take(),
-            |done| {
-                result = (done.cost, done.end);
+            |_, _, _, cost, end| {
+                result = (cost, end);
                 false
             },
         );

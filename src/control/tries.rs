@@ -48,20 +48,10 @@ struct Try<S> {
     stalled: u32,
 }
 
-/// A plan that is done. No cost is finite if the numbers overflow.
-pub(super) struct Done<'a, S, V> {
-    /// How many plans came before it.
-    pub(super) index: usize,
-    pub(super) knots: &'a [Knot<V>],
-    pub(super) lane: usize,
-    pub(super) cost: S,
-    /// The state after the plan.
-    pub(super) end: State<S>,
-}
-
 /// Improves plans from a state, each by at most so many iterations. `next` writes the next plan into
-/// a lane, and returns its length, or `None` if there is no other. `take` takes a plan that is done,
-/// and returns whether to go on.
+/// a lane, and returns its length, or `None` if there is no other. `take` gets a plan that is done:
+/// how many plans began before it, its lane, its knots, its cost, and the state after it. It returns
+/// whether to go on. No cost is finite if the numbers overflow.
 #[inline(never)]
 pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
     machine: Machine<'_, A>,
@@ -70,7 +60,7 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
     iterations: u32,
     knots: &mut [Knot<V>],
     mut next: impl FnMut(&mut [Knot<V>], usize) -> Option<usize>,
-    mut take: impl FnMut(Done<'_, A::Scalar, V>) -> bool,
+    mut take: impl FnMut(usize, usize, &[Knot<V>], A::Scalar, State<A::Scalar>) -> bool,
 ) {
     let number = A::Scalar::from_f64;
     let [zero, one] = [A::Scalar::ZERO, A::Scalar::ONE];
@@ -156,14 +146,8 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
             if plan.phase == Phase::Waits && (is_over || !plan.cost.is_finite()) {
                 plan.phase = Phase::Idle;
                 let len = orders.len.lane(i).to_f64() as usize;
-                let done = Done {
-                    index: plan.index,
-                    knots: knots.get(..len).unwrap_or(knots),
-                    lane: i,
-                    cost: plan.cost,
-                    end: lanes(&ends, i).into(),
-                };
-                if !take(done) {
+                let knots = knots.get(..len).unwrap_or(knots);
+                if !take(plan.index, i, knots, plan.cost, lanes(&ends, i).into()) {
                     return;
                 }
             }

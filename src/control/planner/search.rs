@@ -7,7 +7,7 @@ use rand_core::Rng;
 
 use super::super::error::ControlError;
 use super::super::plan::{Knot, NoPlan};
-use super::super::tries::{self, Done};
+use super::super::tries;
 use super::{ITERATIONS, Planner};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
@@ -52,10 +52,10 @@ impl<A: Arithmetic> Planner<A> {
             }
             None
         };
-        let take = |done: Done<'_, A::Scalar, Side<A::Scalar>>| {
-            if done.cost.is_finite() && self.catches(done.end) {
-                let plan: Vec<_> = done.knots.iter().map(|knot| knot.lane(done.lane)).collect();
-                found = self.is_success(&plan, done.end).then_some(plan);
+        let take = |_, lane, knots: &[Knot<Side<A::Scalar>>], cost: A::Scalar, end| {
+            if cost.is_finite() && self.catches(end) {
+                let plan: Vec<_> = knots.iter().map(|knot| knot.lane(lane)).collect();
+                found = self.is_success(&plan, end).then_some(plan);
             }
             found.is_none()
         };
@@ -89,11 +89,11 @@ impl<A: Arithmetic> Planner<A> {
             set_plan(knots, lane, plan);
             Some(plan.len())
         };
-        let take = |done: Done<'_, A::Scalar, Side<A::Scalar>>| {
-            let places = plans.get_mut(done.index).into_iter().flatten();
-            places.zip(done.knots).for_each(|(place, knot)| *place = knot.lane(done.lane));
-            if let Some(place) = costs.get_mut(done.index) {
-                *place = done.cost;
+        let take = |index: usize, lane, knots: &[Knot<Side<A::Scalar>>], cost, _| {
+            let places = plans.get_mut(index).into_iter().flatten();
+            places.zip(knots).for_each(|(place, knot)| *place = knot.lane::<A::Scalar>(lane));
+            if let Some(place) = costs.get_mut(index) {
+                *place = cost;
             }
             true
         };
