@@ -48,10 +48,10 @@ struct Try<S> {
     stalled: u32,
 }
 
-/// Improves plans from a state, each by at most so many iterations. `next` writes the next plan into
-/// a lane, and returns its length, or `None` if there is no other. `take` gets a plan that is done:
-/// how many plans began before it, its lane, its knots, its cost, and the state after it. It returns
-/// whether to go on. No cost is finite if the numbers overflow.
+/// Improves plans from a state, each by at most so many iterations. `next` writes the next plan
+/// into a lane, and returns its length, or `None` if there is no other. `take` gets a plan that is
+/// done: how many plans began before it, its lane, its knots, its cost, and the state after it. It
+/// returns whether to go on. No cost is finite if the numbers overflow.
 #[inline(never)]
 pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
     machine: Machine<'_, A>,
