@@ -181,7 +181,7 @@ impl Arithmetic for Micro {
     }
 }
 
-/// An arithmetic with [viscous friction](crate::physics::Viscous) of the joints, which is 0 by
+/// An arithmetic with [viscous friction](crate::physics::Joints) of the joints, which is 0 by
 /// default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

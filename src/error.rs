@@ -26,13 +26,6 @@ pub enum Error {
         /// The rule, before the unit: `"finite and above 0"`.
         rule: &'static str,
     },
-    /// A joint has friction, and the arithmetic has none.
-    NoFriction {
-        /// `"friction.joint1"` or `"friction.joint2"`.
-        name: &'static str,
-        /// The coefficient given, N m s/rad.
-        value: f64,
-    },
     /// A batch has no memory for the parameters of each acrobot.
     SharedParams,
     /// A batch has no acrobots.
@@ -84,9 +77,7 @@ impl Error {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::OutOfRange { name, .. }
-            | Self::NoFriction { name, .. }
-            | Self::WrongLength { name, .. } => name,
+            Self::OutOfRange { name, .. } | Self::WrongLength { name, .. } => name,
             Self::UnknownAction(_) => "action",
             _ => "",
         }
@@ -103,7 +94,6 @@ impl Error {
     pub const fn message(&self) -> &'static str {
         match self {
             Self::OutOfRange { .. } => "a number is out of range",
-            Self::NoFriction { .. } => "the arithmetic has no friction",
             Self::SharedParams => "a batch must have memory for the parameters of each acrobot",
             Self::EmptyBatch => "a batch must have at least 1 acrobot",
             #[cfg(feature = "alloc")]
@@ -129,10 +119,6 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
             Error::OutOfRange { value, unit, rule, .. } => {
                 write!(f, "{name} must be {rule} {unit}, got {value}")
             }
-            Error::NoFriction { value, .. } => write!(
-                f,
-                "{name} must be 0 unless the arithmetic is Damped, in N m s/rad, got {value}"
-            ),
             Error::WrongLength { len, expected, .. } => {
                 write!(f, "{name} must have {expected} elements, got {len}")
             }

@@ -38,11 +38,11 @@ mod step;
 
 pub(crate) use arithmetic::{check_params, default_model, model};
 pub use bounds::{saturate, wrap};
-pub use friction::Viscous;
+pub(crate) use friction::friction;
 pub(crate) use geometry::{directions, positions};
 pub(crate) use model::{Constants, Defaults, Given, Model, Modeled};
 pub(crate) use params::FIELDS;
-pub use params::{Dynamics, Params};
+pub use params::{Dynamics, Joints, Params};
 pub use pendulum::Pendulum;
 pub(crate) use pendulum::{check_torque, sin_cos};
 pub(crate) use rk4::plus_scaled;

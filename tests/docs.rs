@@ -62,8 +62,8 @@ fn parameters_are_described_with_their_units_and_ranges() {
         };
         let (of, field) = name.rsplit_once('.').unwrap_or(("", name));
         let field = field.split('[').next().unwrap();
-        let rust = if of.is_empty() { "params" } else { of };
-        check(&format!("src/physics/{rust}.rs"), &format!("pub {field}: "), unit, range);
+        let declared = if of.is_empty() { field } else { of };
+        check("src/physics/params.rs", &format!("pub {declared}: "), unit, range);
         if of.is_empty() {
             check("bindings/c/src/data.rs", &format!("pub {field}: "), unit, range);
         }
@@ -79,7 +79,7 @@ fn parameters_are_described_with_their_units_and_ranges() {
 }
 
 /// Python's name of each parameter.
-const IN_PYTHON: [&str; 18] = [
+const IN_PYTHON: [&str; 21] = [
     "LINK_LENGTH_1",
     "LINK_LENGTH_2",
     "LINK_MASS_1",
@@ -98,6 +98,9 @@ const IN_PYTHON: [&str; 18] = [
     "torque_noise_max",
     "FRICTION_1",
     "FRICTION_2",
+    "COULOMB_1",
+    "COULOMB_2",
+    "rotor",
 ];
 
 /// The comment on a declaration's line and on those above it has the unit and the range, or says

@@ -5,7 +5,7 @@ use acrobot::batch::VecBatch;
 use acrobot::control::inverse_dynamics;
 use acrobot::env::{AcrobotEnv, RenderMode};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use acrobot::physics::{Dynamics, Pendulum, Viscous};
+use acrobot::physics::{Dynamics, Joints, Pendulum};
 use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 
 /// `Portable`'s scalar and sines with Gymnasium's form of the equations, where `Portable` has the
@@ -74,8 +74,9 @@ fn the_equations_are_the_inverse_of_newton_and_eulers() {
             let params = Params { dynamics, ..params };
             check::<Portable>(params, state, torque);
             check::<GymnasiumF64>(params, state, torque);
-            let friction = Viscous { joint1: 0.3, joint2: 0.7 };
-            let params = Params { friction, ..params };
+            let friction = Joints { joint1: 0.3, joint2: 0.7 };
+            let coulomb = Joints { joint1: 0.2, joint2: 0.1 };
+            let params = Params { friction, coulomb, ..params }.with_rotor(0.002, 6.0);
             check::<Damped<Portable>>(params, state, torque);
             check::<Damped<Reference>>(params, state, torque);
             check::<Damped<GymnasiumF64>>(params, state, torque);
@@ -123,7 +124,7 @@ fn positions_and_energies_follow_from_states_and_torques() {
 #[test]
 fn an_arithmetic_without_friction_rejects_it() {
     let rule = "friction.joint2 must be 0 unless the arithmetic is Damped, in N m s/rad, got 0.5";
-    let friction = Viscous { joint1: -0.0, joint2: 0.5 };
+    let friction = Joints { joint1: -0.0, joint2: 0.5 };
     let with = Params { friction, ..Params::DEFAULT };
     let mut pendulum = Pendulum::<Portable>::hanging();
     let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(0));

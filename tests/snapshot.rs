@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use acrobot::arithmetic::{Arithmetic, Damped, Reference};
 use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::Viscous;
+use acrobot::physics::Joints;
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use crc::{CRC_32_ISCSI, Crc};
@@ -157,8 +157,8 @@ fn every_missing_field_is_an_error() {
     }
     check(&busy(), 37);
     check(&VecBatch::<Fast>::new(SeedSequence::new(1), 2).unwrap(), 91);
-    let friction = Viscous { joint1: 0.5, joint2: 0.25 };
-    check(&Params::<f64> { friction, ..Params::DEFAULT }, 18);
+    let friction = Joints { joint1: 0.5, joint2: 0.25 };
+    check(&Params::<f64> { friction, ..Params::DEFAULT }, 21);
 }
 
 /// The largest snapshot: all integers of the generator and of the limit have their largest value.

@@ -48,7 +48,6 @@ fn errors_name_the_value_and_the_rule() {
         assert_eq!(error.to_string(), message);
         messages.push(error.message());
     }
-    messages.push(Error::NoFriction { name: "friction.joint1", value: 1.0 }.message());
     messages.push(Error::UnknownAction(3).message());
     messages.push(Error::SharedParams.message());
     messages.push(Error::OutOfMemory { len: 3 }.message());
@@ -63,7 +62,6 @@ fn errors_name_the_value_and_the_rule() {
             "an argument has the wrong length",
             "a batch has no acrobot with this index",
             "a seed must be a decimal integer of at least 0",
-            "the arithmetic has no friction",
             "an action must be 0, 1 or 2",
             "a batch must have memory for the parameters of each acrobot",
             "a batch must fit into memory",

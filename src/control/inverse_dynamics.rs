@@ -5,7 +5,7 @@ use super::matrix::check_finite;
 use crate::arithmetic::Arithmetic;
 use crate::error::Range;
 use crate::math::Real;
-use crate::physics::{Dynamics, Pendulum, Viscous, directions};
+use crate::physics::{Dynamics, Pendulum, directions, friction};
 
 /// The torques and forces of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +56,7 @@ pub fn inverse_dynamics<A: Arithmetic>(
     let params = pendulum.params();
     let state = pendulum.state();
     let [direction1, direction2] = directions(pendulum.sin_cos());
+    let rates = [state.dtheta1, state.dtheta2];
     let (rate1, rate2) = (state.dtheta1, state.dtheta1 + state.dtheta2);
     let (turn1, turn2) = (ddtheta1, ddtheta1 + ddtheta2);
     let (l1, lc1) = (params.length1, params.center_of_mass1);
@@ -76,14 +77,15 @@ pub fn inverse_dynamics<A: Arithmetic>(
     let across = |(sin, cos), [x, y]: [A::Scalar; 2]| cos * x + sin * y;
     let force2 = center2.map(|x| params.mass2 * x);
     let force1 = add(force2, center1.map(|x| params.mass1 * x));
-    let Viscous { joint1, joint2 } = params.friction;
-    let torque2 = params.inertia2 * turn2 + lc2 * across(direction2, force2);
+    let [(friction1, _), (friction2, _)] = friction::<A, A::Scalar>(pendulum.model(), rates);
+    let torque2 = params.inertia2 * turn2 + lc2 * across(direction2, force2) - params.rotor * turn1;
     let torque1 = torque2
         + params.inertia1 * turn1
         + lc1 * across(direction1, force1)
         + (l1 - lc1) * across(direction1, force2)
-        + joint1 * state.dtheta1;
-    let torque2 = torque2 + joint2 * state.dtheta2;
+        - params.rotor * turn2
+        + friction1;
+    let torque2 = torque2 + friction2;
     let (sin2, _) = pendulum.sin_cos()[1];
     let centrifugal = params.mass2 * l1 * lc2 * (rate1 * rate1) * sin2;
     let forces = Forces {

@@ -4,7 +4,7 @@ use super::error::ControlError;
 use super::matrix::check_finite;
 use crate::arithmetic::Arithmetic;
 use crate::math::{Real, SinCos};
-use crate::physics::{Constants, Model, Pendulum, Viscous, check_torque, directions};
+use crate::physics::{Constants, Model, Pendulum, check_torque, directions, friction};
 
 /// A linear model: x is the deviation from a state \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u that
 /// from a torque, N m. The equations of motion give ẋ = A x + B u, one step gives x′ = A x + B u.
@@ -74,7 +74,7 @@ pub(super) fn partials<A: Arithmetic>(
     [(sin1, cos1), (sin2, cos2)]: [SinCos<A::Scalar>; 2],
     torque: A::Scalar,
 ) -> ([A::Scalar; 2], [[A::Scalar; 2]; 5]) {
-    let one = A::Scalar::from_f64(1.0);
+    let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
     let Constants { coupling, link2, gravity1, gravity2, nips, .. } = model.constants;
     let params = &model.params;
     let (l1, lc1) = (params.length1, params.center_of_mass1);
@@ -82,12 +82,20 @@ pub(super) fn partials<A: Arithmetic>(
     let m2_l1_squared = params.mass2 * (l1 * l1);
     let upper = link1 + m2_l1_squared;
     let (coupling_sin, coupling_cos) = (coupling * sin2, coupling * cos2);
-    // U L − c² as a sum in which nothing cancels.
-    let determinant = link1 * link2 + m2_l1_squared * params.inertia2 + coupling_sin * coupling_sin;
+    // U L − c² as a sum in which nothing cancels without a rotor.
+    let mut determinant =
+        link1 * link2 + m2_l1_squared * params.inertia2 + coupling_sin * coupling_sin;
+    let mut between = coupling_cos;
+    let [mut resistance1, mut resistance2] = [(zero, zero); 2];
+    if A::HAS_FRICTION {
+        [resistance1, resistance2] = friction::<A, A::Scalar>(model, [dtheta1, dtheta2]);
+        between = coupling_cos - params.rotor;
+        determinant = determinant + params.rotor * (coupling_cos + between);
+    }
     let inverse = one / determinant;
     let solve = |[force1, force2]: [A::Scalar; 2]| {
-        let alpha = (link2 * force1 - coupling_cos * force2) * inverse;
-        let beta = (upper * force2 - coupling_cos * force1) * inverse;
+        let alpha = (link2 * force1 - between * force2) * inverse;
+        let beta = (upper * force2 - between * force1) * inverse;
         [alpha, beta - alpha]
     };
 
@@ -98,14 +106,13 @@ pub(super) fn partials<A: Arithmetic>(
     let fall = -(gravity2 * cos_sum);
     let dalpha_squared = dalpha * dalpha;
     let twice_sin = coupling_sin + coupling_sin;
-    let Viscous { joint1, joint2 } = params.friction;
+    let ((friction1, slope1), (friction2, slope2)) = (resistance1, resistance2);
     let force1 = coupling_sin * (dbeta * dbeta - nips * dalpha_squared)
         - gravity1 * sin1
         - torque
-        - joint1 * dtheta1
-        + joint2 * dtheta2;
-    let force2 =
-        torque - gravity2 * sin_sum - coupling_sin * (book * dalpha_squared) - joint2 * dtheta2;
+        - friction1
+        + friction2;
+    let force2 = torque - gravity2 * sin_sum - coupling_sin * (book * dalpha_squared) - friction2;
     let [ddalpha, ddtheta2] = solve([force1, force2]);
     let ddbeta = ddalpha + ddtheta2;
     let derivatives = [
@@ -114,8 +121,8 @@ pub(super) fn partials<A: Arithmetic>(
             coupling_cos * (dbeta * dbeta - nips * dalpha_squared) + coupling_sin * ddbeta,
             fall - coupling_cos * (book * dalpha_squared) + coupling_sin * ddalpha,
         ],
-        [twice_sin * (dbeta - nips * dalpha) - joint1, -(twice_sin * (book * dalpha))],
-        [twice_sin * dbeta + joint2, -joint2],
+        [twice_sin * (dbeta - nips * dalpha) - slope1, -(twice_sin * (book * dalpha))],
+        [twice_sin * dbeta + slope2, -slope2],
         [-one, one],
     ]
     .map(solve);

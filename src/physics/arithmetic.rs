@@ -2,7 +2,6 @@
 
 use core::fmt;
 
-use super::friction::Viscous;
 use super::model::{Form, Given, Model, Modeled, Models};
 use super::params::Params;
 use crate::error::Error;
@@ -24,8 +23,7 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// How the equations of motion are evaluated.
     const FORM: Form = Form::Lean;
 
-    /// Whether the joints can have [friction](Viscous), as in
-    /// [`Damped`](crate::arithmetic::Damped).
+    /// Whether the joints can have friction, as in [`Damped`](crate::arithmetic::Damped).
     const HAS_FRICTION: bool = false;
 
     /// Sine and cosine of `x` rad. Both must be within \[−1, 1\] for every finite `x`.
@@ -59,10 +57,9 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
 /// The model of given parameters, which must suit the arithmetic.
 pub(crate) const fn default_model<A: Arithmetic, G: Given>() -> Model<A::Scalar> {
     const {
-        let Viscous { joint1, joint2 } = G::PARAMS.friction;
-        let suits = check_friction::<A>([joint1, joint2]).is_ok();
+        assert!(G::PARAMS.check(true).is_ok(), "a parameter is out of range");
+        let suits = G::PARAMS.check(A::HAS_FRICTION).is_ok();
         assert!(suits, "the arithmetic must be Damped, because the parameters have friction");
-        assert!(G::PARAMS.check().is_ok(), "a parameter is out of range");
     }
     match A::FORM {
         Form::Lean => <A::Scalar as Modeled>::Of::<G>::LEAN,
@@ -74,32 +71,10 @@ pub(crate) const fn default_model<A: Arithmetic, G: Given>() -> Model<A::Scalar>
 #[inline]
 pub(crate) fn model<A: Arithmetic>(params: Params<A::Scalar>) -> Model<A::Scalar> {
     let lengths = [params.length1, params.center_of_mass1, params.center_of_mass2];
-    A::Scalar::model(A::FORM, params, lengths.map(A::square))
+    A::Scalar::model(A::FORM, A::HAS_FRICTION, params, lengths.map(A::square))
 }
 
 /// Checks parameters, and that there is no friction where the arithmetic has none.
 pub(crate) fn check_params<A: Arithmetic>(params: &Params<impl Modeled>) -> Result<(), Error> {
-    params.validate()?;
-    let Viscous { joint1, joint2 } = params.friction;
-    check_friction::<A>([joint1.to_f64(), joint2.to_f64()])
-}
-
-/// Checks that both coefficients are 0 where the arithmetic has no friction.
-pub(super) const fn check_friction<A: Arithmetic>(friction: [f64; 2]) -> Result<(), Error> {
-    let (name, value) = match friction {
-        _ if A::HAS_FRICTION => return Ok(()),
-        [0.0, 0.0] => return Ok(()),
-        [0.0, joint2] => ("friction.joint2", joint2),
-        [joint1, _] => ("friction.joint1", joint1),
-    };
-    Err(Error::NoFriction { name, value })
-}
-
-/// A torque less that of a joint's friction, N m.
-#[inline(always)]
-pub(super) fn resist<A: Arithmetic, V: Numbers<A::Scalar>>(torque: V, joint: V, dtheta: V) -> V {
-    match A::HAS_FRICTION {
-        true => torque - joint * dtheta,
-        false => torque,
-    }
+    Modeled::check(params, A::HAS_FRICTION)
 }

@@ -1,24 +1,28 @@
 //! Friction of the joints.
 
-/// Viscous friction: each joint resists its velocity with a torque in proportion to it. Only
-/// arithmetics [with friction](crate::arithmetic::Damped) accept one that is not 0.
-///
-/// ```
-/// use acrobot::arithmetic::Damped;
-/// use acrobot::physics::{Pendulum, Viscous};
-/// use acrobot::{Fast, Params, State};
-///
-/// let friction = Viscous { joint1: 0.05, joint2: 0.05 };
-/// let params = Params { friction, ..Params::DEFAULT };
-/// Pendulum::<Damped<Fast>>::new(params, State::HANGING)?.step(1.0)?;
-/// # Ok::<(), acrobot::Error>(())
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Viscous<V> {
-    /// Of the fixed joint, which resists θ̇1: N m s/rad; 0 or more.
-    pub joint1: V,
-    /// Of the elbow, which resists θ̇2: N m s/rad; 0 or more.
-    pub joint2: V,
+use super::arithmetic::Arithmetic;
+use super::model::Model;
+use crate::math::Numbers;
+use crate::math::sealed::Sealed as _;
+
+/// The torque against each velocity, N m, and its slope by that velocity: viscous friction in
+/// proportion to it, and Coulomb's, which is smooth below a small velocity and constant above.
+#[inline(always)]
+pub(crate) fn friction<A: Arithmetic, V: Numbers<A::Scalar>>(
+    model: &Model<V>,
+    [dtheta1, dtheta2]: [V; 2],
+) -> [(V, V); 2] {
+    let (viscous, coulomb) = (model.params.friction, model.params.coulomb);
+    let one = V::splat(A::Scalar::ONE);
+    let half = V::splat(A::Scalar::HALF);
+    let resist = |viscous: V, coulomb: V, dtheta: V| {
+        let x = (dtheta * model.constants.dry).saturate(one);
+        let rest = half * (one - x * x);
+        let slope = viscous + coulomb * ((rest + (rest + rest)) * model.constants.dry);
+        (viscous * dtheta + coulomb * (x + x * rest), slope)
+    };
+    [
+        resist(viscous.joint1, coulomb.joint1, dtheta1),
+        resist(viscous.joint2, coulomb.joint2, dtheta2),
+    ]
 }

@@ -1,7 +1,7 @@
 //! Gymnasium's expressions, operation by operation.
 
-use super::arithmetic::{Arithmetic, resist};
-use super::friction::Viscous;
+use super::arithmetic::Arithmetic;
+use super::friction::friction;
 use super::model::{Constants, Model};
 use super::params::Params;
 use crate::math::sealed::Sealed;
@@ -35,14 +35,20 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     let phi2 = gravity2 * A::cos_near(theta1 + theta2 - quarter);
     let cos1 = A::cos_near(theta1 - quarter);
     let arm = arms_product * cos2;
-    let d1 = link1 + m2 * (arms_squared + two * arm) + inertia1 + inertia2;
-    let d2 = m2 * (lc2_squared + arm) + inertia2;
-    let Viscous { joint1, joint2 } = model.params.friction;
-    let torque = resist::<A, V>(torque, joint2, dtheta2);
-    let phi1 = -coupling * square(dtheta2) * sin2 - twice_coupling * dtheta2 * dtheta1 * sin2
+    let mut d1 = link1 + m2 * (arms_squared + two * arm) + inertia1 + inertia2;
+    let mut d2 = m2 * (lc2_squared + arm) + inertia2;
+    let mut torque = torque;
+    let mut phi1 = -coupling * square(dtheta2) * sin2 - twice_coupling * dtheta2 * dtheta1 * sin2
         + gravity1 * cos1
         + phi2;
-    let phi1 = resist::<A, V>(phi1, -joint1, dtheta1);
+    if A::HAS_FRICTION {
+        let [(friction1, _), (friction2, _)] = friction::<A, V>(model, [dtheta1, dtheta2]);
+        torque = torque - friction2;
+        phi1 = phi1 + friction1;
+        let rotor = model.params.rotor;
+        d1 = d1 - (rotor + rotor);
+        d2 = d2 - rotor;
+    }
     let driven = torque + d2 / d1 * phi1;
     let centrifugal = coupling * square(dtheta1) * sin2;
     let driven = nips.select_within(A::Scalar::ZERO, driven - centrifugal, driven);

@@ -1,7 +1,7 @@
 //! The lean form: one division and the sines and cosines of θ1 and θ2 for each evaluation.
 
-use super::arithmetic::{Arithmetic, resist};
-use super::friction::Viscous;
+use super::arithmetic::Arithmetic;
+use super::friction::friction;
 use super::model::{Constants, Model};
 use crate::math::sealed::Sealed;
 use crate::math::{Numbers, SinCos};
@@ -28,20 +28,28 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
         own: [upper, determinant, book, ..], // kg m², kg² m⁴, 1
         ..
     } = &model.constants;
-    let coupling_cos = coupling * cos2;
+    let mut coupling_cos = coupling * cos2;
     let coupling_sin = coupling * sin2;
+    let mut determinant = determinant + coupling_sin * coupling_sin;
     let sin_sum = sin1 * cos2 + cos1 * sin2;
     let dtheta_sum = dtheta1 + dtheta2;
     let square = dtheta1 * dtheta1;
 
     // The generalized forces: the negated one on θ1, and the one on θ1 + θ2.
-    let Viscous { joint1, joint2 } = model.params.friction;
-    let torque = resist::<A, V>(torque, joint2, dtheta2);
-    let force1 =
-        (gravity1 * sin1 - coupling_sin * (dtheta_sum * dtheta_sum - nips * square)) + torque;
-    let force1 = resist::<A, V>(force1, -joint1, dtheta1);
+    let mut torque = torque;
+    let mut force1 = gravity1 * sin1 - coupling_sin * (dtheta_sum * dtheta_sum - nips * square);
+    if A::HAS_FRICTION {
+        let [(friction1, _), (friction2, _)] = friction::<A, V>(model, [dtheta1, dtheta2]);
+        torque = torque - friction2;
+        force1 = (force1 + torque) + friction1;
+        let rotor = model.params.rotor;
+        determinant = determinant + rotor * (coupling_cos + (coupling_cos - rotor));
+        coupling_cos = coupling_cos - rotor;
+    } else {
+        force1 = force1 + torque;
+    }
     let force2 = torque - gravity2 * sin_sum - coupling_sin * (book * square);
-    let inverse = V::splat(A::Scalar::ONE) / (determinant + coupling_sin * coupling_sin);
+    let inverse = V::splat(A::Scalar::ONE) / determinant;
     let common = link2 * force1 + coupling_cos * force2;
     let ddtheta1 = -(common * inverse);
     let ddtheta2 = (common + upper * force2 + coupling_cos * force1) * inverse;

@@ -1,6 +1,6 @@
 //! The model: parameters, and the constants of the equations that follow from them.
 
-use super::params::{Dynamics, Params};
+use super::params::{Dynamics, Joints, Params};
 use crate::error::Error;
 use crate::math::Real;
 
@@ -13,6 +13,11 @@ pub enum Form {
     /// As Gymnasium's source has them, with four divisions.
     Gymnasium,
 }
+
+/// The velocity, rad/s, from which on dry friction is constant, if dt allows it.
+const WIDTH: f64 = 0.02;
+/// RK4 is stable up to a rate of 2.78/dt. Dry friction has at most this rate.
+const STABLE: f64 = 2.5;
 
 /// The constants, of one acrobot or of many, named as in Sutton & Barto (1998), section 11.3.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +36,8 @@ pub struct Constants<V> {
     pub half_dt: V,
     /// dt/6, s.
     pub sixth_dt: V,
+    /// 1 over the velocity from which on dry friction is constant, s/rad.
+    pub dry: V,
     /// Those of one form, which names them where it unpacks them.
     pub own: [V; 5],
 }
@@ -62,6 +69,7 @@ impl<V: Copy> Model<V> {
                 gravity2: f(one.gravity2, two.gravity2),
                 half_dt: f(one.half_dt, two.half_dt),
                 sixth_dt: f(one.sixth_dt, two.sixth_dt),
+                dry: f(one.dry, two.dry),
                 own: [f(a, v), f(b, w), f(c, x), f(d, y), f(e, z)],
             },
         }
@@ -98,11 +106,16 @@ pub trait Modeled: Real {
     const SWINGUP: Params<Self>;
 
     #[doc(hidden)]
-    fn check(params: &Params<Self>) -> Result<(), Error>;
+    fn check(params: &Params<Self>, has_friction: bool) -> Result<(), Error>;
 
     /// The model of `params`, given l1², lc1² and lc2².
     #[doc(hidden)]
-    fn model(form: Form, params: Params<Self>, squares: [Self; 3]) -> Model<Self>;
+    fn model(
+        form: Form,
+        has_friction: bool,
+        params: Params<Self>,
+        squares: [Self; 3],
+    ) -> Model<Self>;
 }
 
 impl<S: Modeled> Params<S> {
@@ -120,7 +133,7 @@ impl<S: Modeled> Params<S> {
     /// [`Error::OutOfRange`] with the first field outside its range, and for a link without inertia
     /// about its joint.
     pub fn validate(&self) -> Result<(), Error> {
-        S::check(self)
+        S::check(self, true)
     }
 }
 
@@ -131,6 +144,7 @@ for_f32_and_f64! {
         #[inline(always)]
         pub(crate) const fn new(
             form: Form,
+            has_friction: bool,
             mut params: Params<S>,
             [l1_squared, lc1_squared, lc2_squared]: [S; 3],
         ) -> Self {
@@ -167,9 +181,31 @@ for_f32_and_f64! {
                 gravity2: m2 * lc2 * gravity,
                 half_dt: dt * 0.5,
                 sixth_dt: dt / 6.0,
+                dry: if has_friction { 1.0 / Self::width(&params) } else { 0.0 },
                 own,
             };
             Self { params, constants }
+        }
+
+        /// The velocity from which on dry friction is constant, rad/s: so wide that a step is
+        /// stable. At rest the rates are those of M⁻¹ C, where C has the slopes of both joints.
+        /// Their sum is convex in cos θ2, so largest where the elbow is straight or folded.
+        const fn width(params: &Params<S>) -> S {
+            let [upper, link2, coupling] = params.inertias();
+            let Joints { joint1, joint2 } = params.coulomb;
+            let mut width = WIDTH as S;
+            let mut ends: &[S] = &[coupling - params.rotor, -coupling - params.rotor];
+            while let &[between, ref left @ ..] = ends {
+                let inertia1 = upper + link2 + 2.0 * between;
+                let rates = joint1 * link2 + joint2 * inertia1;
+                let rates = 1.5 * rates / (upper * link2 - between * between);
+                let least = rates * params.dt / STABLE as S;
+                if least > width {
+                    width = least;
+                }
+                ends = left;
+            }
+            width
         }
 
         const fn in_f32(bound: S) -> S {
@@ -187,7 +223,7 @@ for_f32_and_f64! {
                 let params = Params::<S>::round(G::PARAMS);
                 let (l1, lc1, lc2) =
                     (params.length1, params.center_of_mass1, params.center_of_mass2);
-                Model::<S>::new(form, params, [l1 * l1, lc1 * lc1, lc2 * lc2])
+                Model::<S>::new(form, true, params, [l1 * l1, lc1 * lc1, lc2 * lc2])
             }
         }
 
@@ -202,13 +238,18 @@ for_f32_and_f64! {
             const DEFAULT: Params<Self> = Params::<S>::ACROBOT;
             const SWINGUP: Params<Self> = Params::<S>::CAPSULES;
 
-            fn check(params: &Params<Self>) -> Result<(), Error> {
-                params.check()
+            fn check(params: &Params<Self>, has_friction: bool) -> Result<(), Error> {
+                params.check(has_friction)
             }
 
             #[inline(always)]
-            fn model(form: Form, params: Params<Self>, squares: [Self; 3]) -> Model<Self> {
-                Model::<S>::new(form, params, squares)
+            fn model(
+                form: Form,
+                has_friction: bool,
+                params: Params<Self>,
+                squares: [Self; 3],
+            ) -> Model<Self> {
+                Model::<S>::new(form, has_friction, params, squares)
             }
         }
     };

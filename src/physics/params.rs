@@ -1,6 +1,5 @@
 //! The parameters, in SI units, and their ranges.
 
-use super::friction::Viscous;
 use crate::action::Action;
 use crate::error::{Error, Range};
 use crate::math::Real;
@@ -18,6 +17,29 @@ pub enum Dynamics {
     /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996), without
     /// the centrifugal term in θ̇1² of the second joint. Energy is not conserved.
     Nips,
+}
+
+/// A coefficient of friction for each joint. Only arithmetics [with
+/// friction](crate::arithmetic::Damped) accept one that is not 0.
+///
+/// ```
+/// use acrobot::arithmetic::Damped;
+/// use acrobot::physics::{Joints, Pendulum};
+/// use acrobot::{Fast, Params, State};
+///
+/// let friction = Joints { joint1: 0.05, joint2: 0.05 }; // N m s/rad
+/// let params = Params { friction, ..Params::DEFAULT };
+/// Pendulum::<Damped<Fast>>::new(params, State::HANGING)?.step(1.0)?;
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Joints<V> {
+    /// Of the fixed joint, which resists θ̇1.
+    pub joint1: V,
+    /// Of the elbow, which resists θ̇2.
+    pub joint2: V,
 }
 
 /// The parameters of an acrobot. [`Params::DEFAULT`] has Gymnasium's values.
@@ -72,8 +94,15 @@ pub struct Params<S = f64> {
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,
-    /// The friction of the joints. An arithmetic without friction rejects one that is not 0.
-    pub friction: Viscous<S>,
+    /// Joints friction: each joint resists its velocity with a torque in proportion to it,
+    /// N m s/rad; 0 or more. This and the fields below must be 0 in an arithmetic without friction.
+    pub friction: Joints<S>,
+    /// Coulomb friction: each joint resists with this torque as soon as it turns, N m; 0 or more.
+    /// Below 0.02 rad/s, or a larger velocity where `dt` needs it, it is smooth.
+    pub coulomb: Joints<S>,
+    /// What a [geared rotor](Self::with_rotor) in the elbow takes from the coupling of the links,
+    /// kg m²; finite, and so small that the mass matrix is positive definite.
+    pub rotor: S,
 }
 
 impl<S: Real> Default for Params<S> {
@@ -101,6 +130,42 @@ impl<S: Real> Params<S> {
         self.zip(self, |x, _| T::from_f64(x.to_f64()))
     }
 
+    /// Sets the inertias of both links about their joints, kg m². One that is too small for the
+    /// centre of mass of link 2 moves this centre and masses, without a change of the motion: only
+    /// the forces in the joints differ.
+    #[must_use]
+    pub fn with_inertias_about_joints(mut self, [mut inertia1, inertia2]: [S; 2]) -> Self {
+        let moment2 = self.mass2 * self.center_of_mass2; // kg m
+        self.inertia2 = inertia2 - moment2 * self.center_of_mass2;
+        if self.inertia2 < S::ZERO {
+            self.inertia2 = S::ZERO;
+            self.center_of_mass2 = inertia2 / moment2;
+            let more = moment2 / self.center_of_mass2 - self.mass2;
+            self.mass2 = self.mass2 + more;
+            // Link 1 carries the difference at its tip.
+            let moment1 = self.mass1 * self.center_of_mass1 - more * self.length1;
+            self.center_of_mass1 = moment1 / self.mass1;
+            inertia1 = inertia1 - more * (self.length1 * self.length1);
+        }
+        let lc1 = self.center_of_mass1;
+        self.inertia1 = inertia1 - self.mass1 * (lc1 * lc1);
+        self
+    }
+
+    /// Adds the rotor of a motor in the elbow, which stands on link 1 and turns by `gear` for each
+    /// turn of link 2 against it, in the opposite direction: its moment of inertia about its axis,
+    /// kg m². A negative `gear` turns in the same direction. It adds to the inertias of both links,
+    /// and takes from their coupling. A rotor in the fixed joint is gear² `inertia` more of
+    /// `inertia1`.
+    #[must_use]
+    pub fn with_rotor(mut self, inertia: S, gear: S) -> Self {
+        let more = gear + S::from_f64(1.0);
+        self.inertia1 = self.inertia1 + more * more * inertia;
+        self.inertia2 = self.inertia2 + gear * gear * inertia;
+        self.rotor = self.rotor + more * gear * inertia;
+        self
+    }
+
     /// Whether all bits are the same. `==` takes −0 for 0.
     pub(crate) fn same(&self, other: &Self) -> bool {
         let [bits, other_bits] =
@@ -110,7 +175,7 @@ impl<S: Real> Params<S> {
 }
 
 /// The name, unit and range of each number.
-pub(crate) const FIELDS: [(&str, &str, Range); 18] = {
+pub(crate) const FIELDS: [(&str, &str, Range); 21] = {
     use Range::{AboveZero, AtLeastNormalF32, AtLeastZero, Finite};
     [
         ("length1", "m", AboveZero),
@@ -131,20 +196,25 @@ pub(crate) const FIELDS: [(&str, &str, Range); 18] = {
         ("torque_noise", "N m", AtLeastZero),
         ("friction.joint1", "N m s/rad", AtLeastZero),
         ("friction.joint2", "N m s/rad", AtLeastZero),
+        ("coulomb.joint1", "N m", AtLeastZero),
+        ("coulomb.joint2", "N m", AtLeastZero),
+        ("rotor", "kg m²", Finite),
     ]
 };
+/// The fields from here on must be 0 in an arithmetic without friction.
+const OF_FRICTION: usize = 16;
 
 impl<S: Copy> Params<S> {
     /// The name and the value of each number, in the order of the fields.
     #[must_use]
-    pub fn numbers(&self) -> [(&'static str, S); 18] {
+    pub fn numbers(&self) -> [(&'static str, S); 21] {
         let mut numbers = *self;
         let mut names = FIELDS.into_iter();
         numbers.numbers_mut().map(|number| (names.next().map_or("", |(name, ..)| name), *number))
     }
 
     /// Each number, to change it, in the order of the fields.
-    pub const fn numbers_mut(&mut self) -> [&mut S; 18] {
+    pub const fn numbers_mut(&mut self) -> [&mut S; 21] {
         let [negative, zero, positive] = &mut self.torques;
         [
             &mut self.length1,
@@ -165,6 +235,9 @@ impl<S: Copy> Params<S> {
             &mut self.torque_noise,
             &mut self.friction.joint1,
             &mut self.friction.joint2,
+            &mut self.coulomb.joint1,
+            &mut self.coulomb.joint2,
+            &mut self.rotor,
         ]
     }
 
@@ -193,10 +266,15 @@ impl<S: Copy> Params<S> {
             torques: [f(negative, torques[0]), f(zero, torques[1]), f(positive, torques[2])],
             torque_noise: f(self.torque_noise, other.torque_noise),
             dynamics: self.dynamics,
-            friction: Viscous {
+            friction: Joints {
                 joint1: f(self.friction.joint1, other.friction.joint1),
                 joint2: f(self.friction.joint2, other.friction.joint2),
             },
+            coulomb: Joints {
+                joint1: f(self.coulomb.joint1, other.coulomb.joint1),
+                joint2: f(self.coulomb.joint2, other.coulomb.joint2),
+            },
+            rotor: f(self.rotor, other.rotor),
         }
     }
 }
@@ -204,27 +282,47 @@ impl<S: Copy> Params<S> {
 for_f32_and_f64! {
     impl Params<S> {
         /// [`Params::validate`], also in a `const`, where neither `?` nor `for` is allowed.
-        pub(crate) const fn check(&self) -> Result<(), Error> {
+        pub(crate) const fn check(&self, has_friction: bool) -> Result<(), Error> {
             let mut params = *self;
             let (mut fields, mut numbers): (&[_], &[_]) = (&FIELDS, &params.numbers_mut());
             while let ([(name, unit, range), fields_left @ ..], [number, left @ ..]) =
                 (fields, numbers)
             {
-                if let Err(error) = range.check(name, **number as f64, unit) {
+                let value = **number as f64;
+                if let Err(error) = range.check(name, value, unit) {
                     return Err(error);
+                }
+                let is_friction = fields.len() <= FIELDS.len() - OF_FRICTION;
+                if is_friction && !has_friction && value != 0.0 {
+                    let rule = "0 unless the arithmetic is Damped, in";
+                    return Err(Error::OutOfRange { name, value, unit, rule });
                 }
                 (fields, numbers) = (fields_left, left);
             }
             let (lc1, lc2) = (self.center_of_mass1, self.center_of_mass2);
-            let (name, value) = if self.inertia1 + self.mass1 * lc1 * lc1 <= 0.0 {
-                ("inertia1", self.inertia1 as f64)
+            let on_the_joint = "above 0 if the centre of mass is on the joint, in";
+            let [upper, link2, coupling] = self.inertias();
+            let most = self.rotor.abs() + coupling;
+            let (name, value, rule) = if self.inertia1 + self.mass1 * lc1 * lc1 <= 0.0 {
+                ("inertia1", self.inertia1, on_the_joint)
             } else if self.inertia2 + self.mass2 * lc2 * lc2 <= 0.0 {
-                ("inertia2", self.inertia2 as f64)
+                ("inertia2", self.inertia2, on_the_joint)
+            } else if self.rotor != 0.0 && !(upper * link2 > most * most) {
+                ("rotor", self.rotor, "so small that the mass matrix is positive definite, in")
             } else {
                 return Ok(());
             };
-            let rule = "above 0 if the centre of mass is on the joint, in";
-            Err(Error::OutOfRange { name, value, unit: "kg m²", rule })
+            Err(Error::OutOfRange { name, value: value as f64, unit: "kg m²", rule })
+        }
+
+        /// M of the absolute angles where the elbow is straight, except the rotor: the inertias
+        /// of the whole arm but link 2 turning with it, of link 2 about its joint, and their
+        /// coupling, kg m².
+        pub(super) const fn inertias(&self) -> [S; 3] {
+            let (lc1, lc2, l1) = (self.center_of_mass1, self.center_of_mass2, self.length1);
+            let link1 = self.mass1 * lc1 * lc1 + self.inertia1;
+            let link2 = self.mass2 * lc2 * lc2 + self.inertia2;
+            [link1 + self.mass2 * l1 * l1, link2, self.mass2 * l1 * lc2]
         }
     }
 }
@@ -270,7 +368,9 @@ for_f32_and_f64! {
             torques: [-1.0, 0.0, 1.0],
             torque_noise: 0.0,
             dynamics: Dynamics::Book,
-            friction: Viscous { joint1: 0.0, joint2: 0.0 },
+            friction: Joints { joint1: 0.0, joint2: 0.0 },
+            coulomb: Joints { joint1: 0.0, joint2: 0.0 },
+            rotor: 0.0,
         };
 
         /// See [`Params::SWINGUP`].
@@ -282,7 +382,7 @@ for_f32_and_f64! {
             max_velocity1: 1e30,
             max_velocity2: 1e30,
             torques: [-2.0, 0.0, 2.0],
-            friction: Viscous { joint1: 0.05, joint2: 0.05 },
+            friction: Joints { joint1: 0.05, joint2: 0.05 },
             ..Self::ACROBOT
         };
     }

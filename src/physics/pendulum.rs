@@ -1,8 +1,7 @@
 //! The pendulum: parameters, a state, and quantities that follow from them.
 
-use super::arithmetic::{Arithmetic, check_friction, check_params, default_model, model};
+use super::arithmetic::{Arithmetic, check_params, default_model, model};
 use super::equations;
-use super::friction::Viscous;
 use super::geometry;
 use super::model::{Defaults, Model};
 use super::params::Params;
@@ -230,7 +229,7 @@ impl<A: Arithmetic> Pendulum<A> {
         let Model { params, constants } = &self.model;
         let (l1, lc1) = (params.length1, params.center_of_mass1);
         let upper = params.mass1 * (lc1 * lc1) + params.inertia1 + params.mass2 * (l1 * l1);
-        let coupling = constants.coupling * cos2;
+        let coupling = constants.coupling * cos2 - params.rotor;
         let d2 = constants.link2 + coupling;
         [[upper + coupling + d2, d2], [d2, constants.link2]]
     }
@@ -274,18 +273,15 @@ for_f32_and_f64! {
             state: State<S>,
         ) -> Result<Pendulum<A>, Error> {
             const { assert!(A::SQUARES_IN_CONST, "a const cannot square as this arithmetic does") };
-            if let Err(error) = self.check() {
-                return Err(error);
-            }
-            let Viscous { joint1, joint2 } = self.friction;
-            if let Err(error) = check_friction::<A>([joint1 as f64, joint2 as f64]) {
+            if let Err(error) = self.check(A::HAS_FRICTION) {
                 return Err(error);
             }
             if let Err(error) = state.check() {
                 return Err(error);
             }
             let (l1, lc1, lc2) = (self.length1, self.center_of_mass1, self.center_of_mass2);
-            let model = Model::<S>::new(A::FORM, self, [l1 * l1, lc1 * lc1, lc2 * lc2]);
+            let squares = [l1 * l1, lc1 * lc1, lc2 * lc2];
+            let model = Model::<S>::new(A::FORM, A::HAS_FRICTION, self, squares);
             let State { theta1, theta2, dtheta1, dtheta2 } = state;
             Ok(Pendulum::from_model(model, [theta1, theta2, dtheta1, dtheta2]))
         }

@@ -6,7 +6,7 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::Real;
 use crate::numpy::uniform;
-use crate::physics::{Dynamics, FIELDS, Modeled, Params, Viscous, check_params};
+use crate::physics::{Dynamics, FIELDS, Joints, Modeled, Params, check_params};
 
 /// How a reset draws one parameter, in its unit. Where both bounds are equal, it draws nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,7 +128,7 @@ fn normal<R: Rng + ?Sized>(rng: &mut R, mean: f64, std: f64, low: f64, high: f64
 /// acrobot.draw_params(&draws)?;
 /// let Params { mass2, inertia1, inertia2, length1, .. } = *acrobot.params();
 /// assert!(inertia1 == inertia2 && length1 == 1.0 && (0.8..=1.2).contains(&mass2));
-/// assert_eq!(size_of::<Draws<f32>>(), 364);
+/// assert_eq!(size_of::<Draws<f32>>(), 424);
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,7 +156,9 @@ impl<S: Real> Draws<S> {
         torques: [Draw::Fixed; 3],
         torque_noise: Draw::Fixed,
         dynamics: Dynamics::Book,
-        friction: Viscous { joint1: Draw::Fixed, joint2: Draw::Fixed },
+        friction: Joints { joint1: Draw::Fixed, joint2: Draw::Fixed },
+        coulomb: Joints { joint1: Draw::Fixed, joint2: Draw::Fixed },
+        rotor: Draw::Fixed,
     };
 
     /// Draws parameters so.

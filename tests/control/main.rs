@@ -10,7 +10,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::control::{
     Forces, difference, inverse_dynamics, linearize, linearize_step, velocities,
 };
-use acrobot::physics::{Pendulum, Viscous};
+use acrobot::physics::{Joints, Pendulum};
 use acrobot::{Fast, Params, Portable, State};
 use common::{dynamics_of, lines, numbers, text_of};
 
@@ -63,7 +63,7 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
             gravity: x[8],
             dt: x[9],
             dynamics: dynamics_of(dynamics),
-            friction: Viscous { joint1: x[10], joint2: x[11] },
+            friction: Joints { joint1: x[10], joint2: x[11] },
             ..Params::default()
         };
         let state = State::from(vector(&x[12..16])).cast();

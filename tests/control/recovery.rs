@@ -3,7 +3,7 @@
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::control::{Knot, Planner, difference};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Pendulum, Viscous, saturate};
+use acrobot::physics::{Joints, Pendulum, saturate};
 use acrobot::{Fast, Params, Portable, State};
 
 const REST: f64 = 20.0; // s after a plan
@@ -85,7 +85,7 @@ fn machine(rng: &mut Pcg64) -> (Params<f64>, f64) {
         center_of_mass2: length2 * part(0.3, 0.7),
         inertia1: mass1 * length1 * length1 / 12.0,
         inertia2: mass2 * length2 * length2 / 12.0,
-        friction: Viscous { joint1: part(0.0, 0.1), joint2: part(0.0, 0.1) },
+        friction: Joints { joint1: part(0.0, 0.1), joint2: part(0.0, 0.1) },
         dt,
         max_velocity1: 1e30,
         max_velocity2: 1e30,

@@ -3,7 +3,7 @@
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::Viscous;
+use acrobot::physics::Joints;
 use acrobot::task::{Balance, Draw, Draws, Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 
@@ -86,7 +86,7 @@ pub fn damped() -> [u64; 2] {
 fn damped_in<A: Arithmetic>() -> u64 {
     let [joint1, joint2] = [0.1, 0.05].map(A::Scalar::from_f64);
     steps(Acrobot::<A>::new(0), |params| {
-        params.friction = Viscous { joint1, joint2 };
+        params.friction = Joints { joint1, joint2 };
     })
 }
 

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::physics::{Dynamics, Viscous};
+use acrobot::physics::{Dynamics, Joints};
 use acrobot::task::{Draw, Draws};
 use acrobot::{Params, State};
 
@@ -61,6 +61,7 @@ pub fn between<S: Real>(low: Params<S>, high: Params<S>) -> Draws<S> {
 
 /// All parameters that an arithmetic has, each from a wide range.
 pub fn draws<A: Arithmetic>() -> Draws<A::Scalar> {
+    let friction = |most: f64| if A::HAS_FRICTION { most } else { 0.0 };
     let [low, high] = [0, 1].map(|i| Params {
         length1: [0.5, 2.0][i],
         length2: [0.5, 2.0][i],
@@ -77,11 +78,9 @@ pub fn draws<A: Arithmetic>() -> Draws<A::Scalar> {
         torques: [[-2.0, -0.5, 0.5], [-0.5, 0.5, 2.0]][i],
         torque_noise: [0.0, 0.5][i],
         dynamics: Dynamics::Book,
-        friction: if A::HAS_FRICTION && i == 1 {
-            Viscous { joint1: 0.5, joint2: 0.3 }
-        } else {
-            Viscous::default()
-        },
+        friction: Joints { joint1: [0.0, friction(0.5)][i], joint2: [0.0, friction(0.3)][i] },
+        coulomb: Joints { joint1: [0.0, friction(0.2)][i], joint2: [0.0, friction(0.1)][i] },
+        rotor: [0.0, friction(0.05)][i],
     });
     between(low.cast(), high.cast())
 }

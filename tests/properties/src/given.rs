@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use acrobot::arithmetic::{Arithmetic, Modeled, Real};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::{Dynamics, Pendulum, Viscous};
+use acrobot::physics::{Dynamics, Joints, Pendulum};
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Params, State};
 use proptest::num::{f32, f64};
@@ -98,20 +98,21 @@ pub fn params<A: Tested>(range: Range) -> BoxedStrategy<Params<A::Scalar>> {
     let Params { dt, max_velocity1, max_velocity2, .. } = Params::DEFAULT;
     let of_links = [(); 4].map(|()| above_0(1.0));
     let limits = [dt, max_velocity1, max_velocity2].map(above_0);
-    let others = [0.5, 0.5, 1.0, 1.0, 0.05, 0.05].map(or_0);
+    let others = [0.5, 0.5, 1.0, 1.0].map(or_0);
+    let friction = [0.05; 5].map(|usual| match A::HAS_FRICTION {
+        true => or_0(usual),
+        false => Just(A::Scalar::ZERO).boxed(),
+    });
     let gravity = prop_oneof![1 => Just(A::Scalar::from_f64(9.8)), 1 => number(range)];
     let torques = [(); 3].map(|()| number::<A::Scalar>(range));
     let noise = prop_oneof![2 => Just(A::Scalar::ZERO), 1 => above_0(1.0)];
     let dynamics = prop_oneof![Just(Dynamics::Book), Just(Dynamics::Nips)];
-    let all = (of_links, limits, others, gravity, torques, noise, dynamics);
-    all.prop_map(|(links, limits, others, gravity, torques, torque_noise, dynamics)| {
+    let all = (of_links, limits, others, gravity, torques, noise, dynamics, friction);
+    all.prop_map(|(links, limits, others, gravity, torques, torque_noise, dynamics, friction)| {
         let [length1, length2, mass1, mass2] = links;
         let [dt, max_velocity1, max_velocity2] = limits;
-        let [center_of_mass1, center_of_mass2, inertia1, inertia2, joint1, joint2] = others;
-        let friction = match A::HAS_FRICTION {
-            true => Viscous { joint1, joint2 },
-            false => Viscous::default(),
-        };
+        let [center_of_mass1, center_of_mass2, inertia1, inertia2] = others;
+        let [viscous1, viscous2, coulomb1, coulomb2, rotor] = friction;
         Params {
             length1,
             length2,
@@ -128,7 +129,9 @@ pub fn params<A: Tested>(range: Range) -> BoxedStrategy<Params<A::Scalar>> {
             torques,
             torque_noise,
             dynamics,
-            friction,
+            friction: Joints { joint1: viscous1, joint2: viscous2 },
+            coulomb: Joints { joint1: coulomb1, joint2: coulomb2 },
+            rotor,
         }
     })
     .prop_filter("valid parameters", |params| params.validate().is_ok())
