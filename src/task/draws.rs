@@ -206,7 +206,16 @@ impl<S: Modeled> Draws<S> {
         let low = self.replace(params, |draw, number, before| draw.bounds(number, before)[0]);
         let high = self.replace(params, |draw, number, before| draw.bounds(number, before)[1]);
         check_params::<A>(&low)?;
-        check_params::<A>(&high)
+        check_params::<A>(&high)?;
+        // Then no draw between them takes more of the coupling than the inertias allow.
+        let [most, other] = [high.rotor, low.rotor].map(S::abs);
+        let most = if most > other { most } else { other };
+        if !low.same(&high) && most * most > low.inertia1 * low.inertia2 {
+            let rule = "at most the root of inertia1 times inertia2 where one is drawn, in";
+            let value = most.to_f64();
+            return Err(Error::OutOfRange { name: "rotor", value, unit: "kg m²", rule });
+        }
+        Ok(())
     }
 }
 

@@ -34,7 +34,7 @@ fn relative<S: Real>(found: &[S], expected: &[f64]) -> f64 {
 }
 
 /// The first of forty cases with moderate parameters, with those over six decades, and with
-/// moderate ones and friction.
+/// moderate ones, friction and a rotor.
 const MODERATE: usize = 0;
 const DECADES: usize = 40;
 const DAMPED: usize = 80;
@@ -50,7 +50,7 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
     let cases = recorded("case").zip(continuous).zip(discrete.zip(motion));
     for ((case, by_time), (by_step, motion)) in cases {
         let (dynamics, given) = case.split_once(' ').unwrap();
-        let x: [f64; 19] = vector(&numbers(given));
+        let x: [f64; 22] = vector(&numbers(given));
         let params = Params {
             length1: x[0],
             length2: x[1],
@@ -64,15 +64,17 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
             dt: x[9],
             dynamics: dynamics_of(dynamics),
             friction: Joints { joint1: x[10], joint2: x[11] },
+            coulomb: Joints { joint1: x[12], joint2: x[13] },
+            rotor: x[14],
             ..Params::default()
         };
-        let state = State::from(vector(&x[12..16])).cast();
+        let state = State::from(vector(&x[15..19])).cast();
         let pendulum = Pendulum::<A>::new(params.cast(), state).unwrap();
-        let torque = Real::from_f64(x[16]);
+        let torque = Real::from_f64(x[19]);
         let continuous = linearize(&pendulum, torque).unwrap();
         let discrete = linearize_step(&pendulum, torque).unwrap();
         let Forces { torques, reaction, elbow } =
-            inverse_dynamics(&pendulum, cast(vector::<2>(&x[17..]))).unwrap();
+            inverse_dynamics(&pendulum, cast(vector::<2>(&x[20..]))).unwrap();
         let pairs = [
             ([continuous.a.as_flattened(), &continuous.b].concat(), &by_time[..]),
             ([discrete.a.as_flattened(), &discrete.b].concat(), &by_step),

@@ -22,10 +22,10 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 NAMES = "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2"
-NAMES += " gravity dt friction1 friction2"
+NAMES += " gravity dt friction1 friction2 coulomb1 coulomb2 rotor"
 LOW = [0.3, 0.3, 0.3, 0.3, 0.0, 0.0, 0.1, 0.1, -15.0, 0.002]
 HIGH = [2.0, 2.0, 3.0, 3.0, 1.0, 1.0, 2.0, 2.0, 15.0, 0.2]
-NONE = [0.0, 0.0]
+NONE = [0.0] * 5
 PACKAGES = "mpmath", "numpy", "scipy"
 DEFAULT = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 1.0, 9.8, 0.2, *NONE]
 STATES = np.array([3.2, 3.2, 6.0, 8.0])
@@ -33,7 +33,7 @@ STATES = np.array([3.2, 3.2, 6.0, 8.0])
 
 def derivative(p, y, torque, dynamics):
     theta1, theta2, dtheta1, dtheta2 = y
-    l1, _, m1, m2, lc1, lc2, i1, i2, g, _, friction1, friction2 = p
+    l1, _, m1, m2, lc1, lc2, i1, i2, g, *_, rotor = p
     sin2, arm = mpmath.sin(theta2), m2 * l1 * lc2
     d1 = m1 * lc1**2 + m2 * (l1**2 + lc2**2) + 2 * arm * mpmath.cos(theta2) + i1 + i2
     d2 = m2 * lc2**2 + arm * mpmath.cos(theta2) + i2
@@ -41,9 +41,22 @@ def derivative(p, y, torque, dynamics):
     phi1 = -arm * dtheta2**2 * sin2 - 2 * arm * dtheta2 * dtheta1 * sin2
     phi1 += (m1 * lc1 + m2 * l1) * g * mpmath.sin(theta1) + phi2
     centrifugal = arm * dtheta1**2 * sin2 if dynamics == "book" else 0
-    mass = mpmath.matrix([[d1, d2], [d2, m2 * lc2**2 + i2]])
-    forces = [-phi1 - friction1 * dtheta1, torque - centrifugal - phi2 - friction2 * dtheta2]
-    return np.array([dtheta1, dtheta2, *mpmath.lu_solve(mass, forces)])
+    mass = mpmath.matrix([[d1 - 2 * rotor, d2 - rotor], [d2 - rotor, m2 * lc2**2 + i2]])
+    forces = np.array([-phi1, torque - centrifugal - phi2]) - friction(p, y[2:])
+    return np.array([dtheta1, dtheta2, *mpmath.lu_solve(mass, forces.tolist())])
+
+
+def friction(p, dtheta):
+    """Viscous friction, and Coulomb's, whose rates are at most 2.5 / dt with the elbow straight and
+    folded."""
+    l1, _, m1, m2, lc1, lc2, i1, i2, _, dt, *viscous, coulomb1, coulomb2, rotor = p
+    upper, link2 = m1 * lc1**2 + i1 + m2 * l1**2, m2 * lc2**2 + i2
+    width = mpmath.mpf(1) / 50
+    for coupling in m2 * l1 * lc2 - rotor, -m2 * l1 * lc2 - rotor:
+        rates = coulomb1 * link2 + coulomb2 * (upper + link2 + 2 * coupling)
+        width = max(width, rates / (upper * link2 - coupling**2) * 1.5 * dt / 2.5)
+    x = np.array([min(max(x / width, -1), 1) for x in dtheta])
+    return viscous * dtheta + np.array([coulomb1, coulomb2]) * (1.5 * x - x**3 / 2)
 
 
 def step(p, y, torque, dynamics):
@@ -79,8 +92,9 @@ def point(theta, distance1, distance2):
 
 
 def lagrangian(p, theta, dtheta):
-    l1, _, m1, m2, lc1, lc2, i1, i2, g, *_ = p
+    l1, _, m1, m2, lc1, lc2, i1, i2, g, *_, rotor = p
     energy = i1 * dtheta[0] ** 2 / 2 + i2 * (dtheta[0] + dtheta[1]) ** 2 / 2
+    energy -= rotor * dtheta[0] * (dtheta[0] + dtheta[1])
     for mass, distances in ((m1, (lc1, 0)), (m2, (l1, lc2))):
         velocity = slope(lambda t: point(theta + dtheta * t, *distances))
         energy += mass * (velocity @ velocity) / 2 - mass * g * point(theta, *distances)[1]
@@ -103,7 +117,7 @@ def motion(p, y, accelerations, dynamics):
         return gradient(lambda change: lagrangian(p, path(t), then + change), 2)
 
     force = gradient(lambda change: lagrangian(p, theta + change, dtheta), 2)
-    torques = slope(momentum) - force + p[10:] * dtheta
+    torques = slope(momentum) - force + friction(p, dtheta)
     if dynamics == "nips":
         torques[1] -= m2 * l1 * lc2 * dtheta[0] ** 2 * mpmath.sin(theta[1])
     return torques, reaction, elbow, velocity(0, l1, 0), velocity(0, l1, l2)
@@ -226,8 +240,11 @@ def main():
         numbers = " ".join(str(x) for array in given for x in np.ravel(array))
         lines.append(f"model {kind} {numbers} {texts(gain)}")
     for number in range(40):
-        p = np.array([*rng.uniform(LOW, HIGH), *decades(rng, -3, 0, 2)])
-        lines += case(number, p, *usual(rng))
+        p = np.array([*rng.uniform(LOW, HIGH), *decades(rng, -3, 0, 4), 0.0])
+        p[-1] = rng.uniform(-1, 1) * np.sqrt(p[6] * p[7])
+        y, *others = usual(rng)
+        y[2:] *= 0.01 if number % 4 > 1 else 1  # where dry friction is smooth
+        lines += case(number, p, y, *others)
     head = [
         "# " + ", ".join(f"{name} {version(name)}" for name in PACKAGES),
         f"# case DYNAMICS {NAMES}, the state, the torque, two accelerations",
