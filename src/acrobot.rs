@@ -76,7 +76,7 @@ impl<O> Step<O> {
 ///
 /// let acrobot = Acrobot::<Fast>::new(42);
 /// let text = serde_json::to_string(&acrobot)?;
-/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":4,"task":"gymnasium","#));
+/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":5,"task":"gymnasium","#));
 /// assert_eq!(serde_json::from_str::<Acrobot<Fast>>(&text)?, acrobot);
 /// # Ok::<(), serde_json::Error>(())
 /// ```

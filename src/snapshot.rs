@@ -11,7 +11,7 @@ use crate::arithmetic::Arithmetic;
 use crate::task::Task;
 
 /// Incremented whenever the fields of any snapshot change.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile:
 ///

@@ -38,11 +38,11 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
         let error = changed.unwrap_err().to_string();
         error.rsplit_once(" at line").unwrap().0.to_owned()
     };
-    let ours = r#""acrobot", version 4, task "gymnasium", arithmetic "portable""#;
+    let ours = r#""acrobot", version 5, task "gymnasium", arithmetic "portable""#;
     let header =
-        r#""snapshot":{"of":"acrobot","version":4,"task":"gymnasium","arithmetic":"portable"},"#;
+        r#""snapshot":{"of":"acrobot","version":5,"task":"gymnasium","arithmetic":"portable"},"#;
     for (from, to) in
-        [(r#""acrobot""#, r#""batch""#), ("4", "3"), ("gymnasium", "swingup"), ("portable", "host")]
+        [(r#""acrobot""#, r#""batch""#), ("5", "4"), ("gymnasium", "swingup"), ("portable", "host")]
     {
         let expected = format!("the snapshot must be {ours}, got {}", ours.replace(from, to));
         assert_eq!(error(from, to), expected);
@@ -51,7 +51,7 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
         let found = error(&(unread + r#""params":{"#), &(changed + r#""params":{}"#));
         assert_eq!(found, expected);
     }
-    let no_snapshot = "; the input must be a snapshot of version 4";
+    let no_snapshot = "; the input must be a snapshot of version 5";
     assert!(error(r#""acrobot""#, r#""an environment of another kind""#).ends_with(no_snapshot));
     assert_eq!(error(header, ""), format!("missing field `snapshot`{no_snapshot}"));
     let rule = "mass2 must be finite and above 0 kg, got -1.5";
@@ -117,8 +117,8 @@ fn stored<T: Serialize + DeserializeOwned>(original: T, lines: &mut std::str::Li
 
 /// Each version has its own file.
 #[test]
-fn snapshots_of_version_4_stay_readable() {
-    let file = include_str!("data/snapshots_4.txt");
+fn snapshots_of_version_5_stay_readable() {
+    let file = include_str!("data/snapshots_5.txt");
     let mut lines = file.lines();
     let found = [
         stored(busy(), &mut lines),
@@ -155,8 +155,8 @@ fn every_missing_field_is_an_error() {
             assert!(error.contains(&expected), "{at}/{name}: {error}");
         }
     }
-    check(&busy(), 37);
-    check(&VecBatch::<Fast>::new(SeedSequence::new(1), 2).unwrap(), 91);
+    check(&busy(), 41);
+    check(&VecBatch::<Fast>::new(SeedSequence::new(1), 2).unwrap(), 103);
     let friction = Joints { joint1: 0.5, joint2: 0.25 };
     check(&Params::<f64> { friction, ..Params::DEFAULT }, 21);
 }
@@ -205,5 +205,5 @@ fn a_checksum_finds_every_flipped_bit() {
     let plain = flip(postcard::to_stdvec(&acrobot).unwrap(), |bytes| postcard::from_bytes(bytes));
     let checked = postcard::to_stdvec_crc32(&acrobot, CRC.digest()).unwrap();
     let checked = flip(checked, |bytes| postcard::from_bytes_crc32(bytes, CRC.digest()));
-    assert_eq!([plain, checked], [[895, 1248], [0, 1280]]);
+    assert_eq!([plain, checked], [[898, 1344], [0, 1376]]);
 }

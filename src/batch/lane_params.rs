@@ -12,7 +12,7 @@ use crate::task::Draws;
 /// use acrobot::Fast;
 /// use acrobot::batch::LaneParams;
 ///
-/// assert_eq!(size_of::<LaneParams<Fast, 16>>(), 1984);
+/// assert_eq!(size_of::<LaneParams<Fast, 16>>(), 2240);
 /// ```
 // Aligned, because an SSE instruction can read only aligned numbers from memory.
 #[derive(Clone, Copy, Debug)]
