@@ -158,7 +158,7 @@ fn every_missing_field_is_an_error() {
     check(&busy(), 41);
     check(&VecBatch::<Fast>::new(SeedSequence::new(1), 2).unwrap(), 103);
     let friction = Joints { joint1: 0.5, joint2: 0.25 };
-    check(&Params::<f64> { friction, ..Params::DEFAULT }, 21);
+    check(&Params::<f64> { friction, ..Params::DEFAULT }, 22);
 }
 
 /// The largest snapshot: all integers of the generator and of the limit have their largest value.

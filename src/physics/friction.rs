@@ -13,16 +13,24 @@ pub(crate) fn friction<A: Arithmetic, V: Numbers<A::Scalar>>(
     [dtheta1, dtheta2]: [V; 2],
 ) -> [(V, V); 2] {
     let (viscous, coulomb) = (model.params.friction, model.params.coulomb);
-    let one = V::splat(A::Scalar::ONE);
-    let half = V::splat(A::Scalar::HALF);
     let resist = |viscous: V, coulomb: V, dtheta: V| {
-        let x = (dtheta * model.constants.dry).saturate(one);
-        let rest = half * (one - x * x);
-        let slope = viscous + coulomb * ((rest + (rest + rest)) * model.constants.dry);
-        (viscous * dtheta + coulomb * (x + x * rest), slope)
+        let (part, slope) = dry_friction::<A, V>(model, dtheta);
+        (viscous * dtheta + coulomb * part, viscous + coulomb * slope)
     };
     [
         resist(viscous.joint1, coulomb.joint1, dtheta1),
         resist(viscous.joint2, coulomb.joint2, dtheta2),
     ]
+}
+
+/// Coulomb friction as a part of its largest torque, and the slope by the velocity, s/rad.
+#[inline(always)]
+pub(crate) fn dry_friction<A: Arithmetic, V: Numbers<A::Scalar>>(
+    model: &Model<V>,
+    dtheta: V,
+) -> (V, V) {
+    let one = V::splat(A::Scalar::ONE);
+    let x = (dtheta * model.constants.dry).saturate(one);
+    let rest = V::splat(A::Scalar::HALF) * (one - x * x);
+    (x + x * rest, (rest + (rest + rest)) * model.constants.dry)
 }

@@ -2,6 +2,7 @@
 //! digits, recorded by `tests/data/control.py`.
 
 mod balance;
+mod estimator;
 mod planner;
 mod recovery;
 mod regulators;

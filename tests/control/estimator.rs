@@ -1,0 +1,195 @@
+//! A filter finds velocities and parameters from angles alone.
+
+use std::f64::consts::TAU;
+
+use acrobot::arithmetic::{Arithmetic, Damped};
+use acrobot::control::{Estimator, Noise, difference};
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::physics::{Joints, Pendulum};
+use acrobot::{Fast, Params, Portable, State};
+
+/// RealAIGym's machine, with its motor's friction.
+pub fn real() -> Params {
+    let params = Params {
+        length1: 0.2,
+        length2: 0.3,
+        mass1: 0.523,
+        mass2: 0.626,
+        center_of_mass1: 0.2,
+        center_of_mass2: 0.256,
+        gravity: 9.81,
+        dt: 0.002,
+        max_velocity1: f64::INFINITY,
+        max_velocity2: f64::INFINITY,
+        friction: Joints { joint1: 0.001, joint2: 0.001 },
+        coulomb: Joints { joint1: 0.16, joint2: 0.12 },
+        ..Params::DEFAULT
+    };
+    params.with_inertias_about_joints([0.0319, 0.0509]).with_rotor(6.29e-5, 6.0)
+}
+
+const COUNTS: f64 = 4096.0;
+const NOISE: Noise = Noise { angle: 1.8 / COUNTS, torque: 0.05 };
+
+/// A simulated machine with encoders, whose motor errs.
+pub struct Machine {
+    pub pendulum: Pendulum<Damped<Portable>>,
+    rng: Pcg64,
+}
+
+impl Machine {
+    pub fn new(params: Params, seed: u64) -> Self {
+        Self { pendulum: Pendulum::new(params, State::HANGING).unwrap(), rng: Pcg64::new(seed) }
+    }
+
+    /// The angles to the next count.
+    pub fn angles(&self) -> [f64; 2] {
+        let State { theta1, theta2, .. } = self.pendulum.state();
+        [theta1, theta2].map(|x| (x / TAU * COUNTS).round() / COUNTS * TAU)
+    }
+
+    pub fn step(&mut self, torque: f64) {
+        let noise = uniform(&mut self.rng, -0.035, 0.035); // 0.02 N m
+        self.pendulum.step(torque + noise).unwrap();
+    }
+}
+
+/// Random torques of up to 3 N m, each for a quarter of a second.
+fn shake(rng: &mut Pcg64, tick: usize, torque: &mut f64) {
+    if tick % 125 == 0 {
+        *torque = uniform(rng, -3.0, 3.0);
+    }
+}
+
+/// The root of the mean square of the errors of both velocities, rad/s, and the part of the errors
+/// that are within two standard deviations.
+fn follow<A: Arithmetic>() -> (f64, f64) {
+    let noise =
+        Noise { angle: A::Scalar::from_f64(NOISE.angle), torque: A::Scalar::from_f64(0.05) };
+    let mut estimator = Estimator::<A>::new(real().cast(), noise).unwrap();
+    let (mut machine, mut rng) = (Machine::new(real(), 1), Pcg64::new(2));
+    let (mut torque, mut squares, mut within, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for tick in 0..5000 {
+        shake(&mut rng, tick, &mut torque);
+        estimator.measure(machine.angles().map(A::Scalar::from_f64)).unwrap();
+        if tick > 100 {
+            let found = estimator.state().cast::<f64>();
+            let errors = difference(found, machine.pendulum.state());
+            for (error, deviation) in errors.iter().zip(estimator.deviations()).skip(2) {
+                squares += error * error;
+                within += f64::from(u8::from(error.abs() < 2.0 * deviation.to_f64()));
+                count += 1.0;
+            }
+        }
+        estimator.step(A::Scalar::from_f64(torque)).unwrap();
+        machine.step(torque);
+    }
+    (f64::sqrt(squares / count), within / count)
+}
+
+use acrobot::arithmetic::Real as _;
+
+#[test]
+fn velocities_follow_from_angles() {
+    for (error, within) in [follow::<Damped<Portable>>(), follow::<Damped<Fast>>()] {
+        assert!(error < 0.05 && within > 0.9, "{error} rad/s, {within}");
+    }
+}
+
+/// A push changes both velocities at once.
+#[test]
+fn a_push_is_noticed_within_a_fiftieth_of_a_second() {
+    let mut estimator = Estimator::<Damped<Portable>>::new(real(), NOISE).unwrap();
+    let mut machine = Machine::new(real(), 1);
+    for tick in 0..520 {
+        if tick == 500 {
+            let state = machine.pendulum.state();
+            let pushed =
+                State { dtheta1: state.dtheta1 + 3.0, dtheta2: state.dtheta2 - 5.0, ..state };
+            machine.pendulum.set_state(pushed).unwrap();
+        }
+        estimator.measure(machine.angles()).unwrap();
+        if tick == 510 || tick == 499 {
+            let [_, _, error1, error2] = difference(estimator.state(), machine.pendulum.state());
+            assert!(error1.abs().max(error2.abs()) < 0.3, "{tick}: {error1} {error2} rad/s");
+        }
+        estimator.step(0.0).unwrap();
+        machine.step(0.0);
+    }
+}
+
+/// The inertias, and both moments of gravity.
+fn base(params: &Params) -> [f64; 5] {
+    let Params { mass1, mass2, length1, center_of_mass1: lc1, center_of_mass2: lc2, .. } = *params;
+    let upper = params.inertia1 + mass1 * lc1 * lc1 + mass2 * length1 * length1;
+    let link2 = params.inertia2 + mass2 * lc2 * lc2;
+    [upper, link2, mass2 * length1 * lc2, mass1 * lc1 + mass2 * length1, mass2 * lc2]
+}
+
+#[test]
+fn ten_seconds_of_motion_tell_the_parameters() {
+    fn check<A: Arithmetic>() -> f64 {
+        let mut worst = 0.0_f64;
+        for seed in 0..5 {
+            let mut rng = Pcg64::new(10 + seed);
+            let mut wrong = |x: f64| x * (1.0 + uniform(&mut rng, -0.1, 0.1));
+            let truth = real();
+            let given = Params {
+                mass1: wrong(truth.mass1),
+                mass2: wrong(truth.mass2),
+                inertia1: wrong(truth.inertia1),
+                inertia2: wrong(truth.inertia2),
+                rotor: 0.0,
+                friction: Joints { joint1: 0.0, joint2: 0.0 },
+                coulomb: Joints { joint1: wrong(0.16), joint2: wrong(0.12) },
+                ..truth
+            };
+            let deviations = Params {
+                mass1: 0.05,
+                mass2: 0.05,
+                length1: 0.0,
+                inertia1: 0.002,
+                inertia2: 0.002,
+                rotor: 0.003,
+                friction: Joints { joint1: 0.01, joint2: 0.01 },
+                coulomb: Joints { joint1: 0.02, joint2: 0.02 },
+                ..Params::DEFAULT
+            };
+            let noise = Noise {
+                angle: A::Scalar::from_f64(NOISE.angle),
+                torque: A::Scalar::from_f64(0.05),
+            };
+            let mut estimator =
+                Estimator::<A, 10>::with_params(given.cast(), deviations.cast(), noise).unwrap();
+            let (mut machine, mut torque) = (Machine::new(truth, seed), 0.0);
+            for tick in 0..5000 {
+                shake(&mut rng, tick, &mut torque);
+                estimator.measure(machine.angles().map(A::Scalar::from_f64)).unwrap();
+                estimator.step(A::Scalar::from_f64(torque)).unwrap();
+                machine.step(torque);
+            }
+            let found = estimator.params().cast::<f64>();
+            for (found, truth) in base(&found).into_iter().zip(base(&truth)) {
+                worst = worst.max((found / truth - 1.0).abs());
+            }
+            println!("{seed}: {worst:.4} {:?} {:?} {}", found.coulomb, found.friction, found.rotor);
+        }
+        worst
+    }
+    let errors = [check::<Damped<Portable>>(), check::<Damped<Fast>>()];
+    assert!(errors.iter().all(|error| *error < 0.03), "{errors:?}");
+}
+
+#[test]
+fn bad_noise_and_angles_are_rejected() {
+    let error = |noise| Estimator::<Fast>::new(Params::DEFAULT, noise).unwrap_err().to_string();
+    let angle = error(Noise { angle: 0.0, torque: 1.0 });
+    assert_eq!(angle, "angle must be finite and above 0 rad, got 0");
+    let torque = error(Noise { angle: 1e-3, torque: f32::NAN });
+    assert_eq!(torque, "torque must be finite and above 0 N m, got NaN");
+    let noise = Noise { angle: 1e-3, torque: 0.1 };
+    let mut estimator = Estimator::<Fast>::new(Params::DEFAULT, noise).unwrap();
+    let error = estimator.measure([f32::NAN, 0.0]).unwrap_err().to_string();
+    assert_eq!(error, "theta1 must be a finite number of rad, got NaN");
+    assert!(estimator.step(f32::INFINITY).is_err());
+}
