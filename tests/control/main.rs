@@ -3,6 +3,7 @@
 
 mod balance;
 mod estimator;
+mod identify;
 mod planner;
 mod recovery;
 mod regulators;
