@@ -161,7 +161,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
             given: params,
             deviations,
             noise,
-            torque: noise.torque * noise.torque,
+            torque: noise.torque * noise.torque * A::Scalar::from_f64(1e4),
             of_state: [[zero; 4]; 4],
             with_state: [[zero; 4]; K],
             of_params,
