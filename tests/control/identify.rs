@@ -56,7 +56,9 @@ fn inertias(params: &Params) -> [f64; 3] {
 
 #[test]
 fn ten_seconds_tell_the_inertias() {
-    for (half, window) in [(1, 250), (2, 250), (3, 100), (3, 250), (5, 100), (5, 250), (10, 100), (10, 250)] {
+    for (half, window) in
+        [(1, 250), (2, 250), (3, 100), (3, 250), (5, 100), (5, 250), (10, 100), (10, 250)]
+    {
         let mut rng = Pcg64::new(5);
         let mut worst = Vec::new();
         for seed in 0..20 {
@@ -69,7 +71,15 @@ fn ten_seconds_tell_the_inertias() {
             let pairs = inertias(&truth).into_iter().zip(found.values);
             let error = pairs.map(|(truth, found)| (found / truth - 1.0).abs()).fold(0.0, f64::max);
             worst.push(error);
-            if seed == 0 { println!("{:?} {:?}\n{:?} {:?}", inertias(&truth), truth.coulomb, found.values, found.errors); }
+            if seed == 0 {
+                println!(
+                    "{:?} {:?}\n{:?} {:?}",
+                    inertias(&truth),
+                    truth.coulomb,
+                    found.values,
+                    found.errors
+                );
+            }
         }
         worst.sort_by(f64::total_cmp);
         println!("{half} {window}: median {:.4}, worst {:.4}", worst[10], worst[19]);

@@ -10,7 +10,6 @@
 //! episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or
 //! how many of Gymnasium's initial states end upright.
 
-mod observer;
 mod replan;
 mod search;
 
