@@ -18,21 +18,14 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use acrobot::Action;
 use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Action, REWARD_THRESHOLD};
 use clap::Parser;
-use desktop::search::Search;
 use desktop::{Returns, animation, bang_bang, evaluate, load, write};
-use indicatif::{ProgressBar, ProgressIterator, ProgressStyle};
-
-mod curve;
-mod pictures;
-
+use indicatif::{ProgressBar, ProgressStyle};
 use learners::{Budget, Memory, Memory16, Memory32, Memory64, QLambda, evaluation, play, training};
-use pictures::svg;
 
-/// Learns to swing up, compares the learnt policy with two simple ones, and draws the learning
-/// curve, the values and a greedy episode.
+/// Learns to swing up, compares the learnt policy with two simple ones, and draws a greedy episode.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
@@ -57,10 +50,6 @@ struct Options {
     /// File to load the weights from. Without it all weights are 0.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
-    /// Also plays a beam search over the learnt values, which looks so many steps ahead.
-    #[arg(long, value_name = "STEPS", conflicts_with = "quiet")]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=128))]
-    plan: Option<u32>,
     /// Prints one line of figures, and draws nothing.
     #[arg(long)]
     quiet: bool,
@@ -74,6 +63,8 @@ impl Options {
 
 /// The episodes of an evaluation.
 const EVALUATION: u32 = 1000;
+/// The episodes of a running mean.
+const LATEST: usize = 100;
 
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
@@ -103,7 +94,10 @@ fn run<const S: usize, const T: usize, const N: usize>(
 
     let seed = &options.seed;
     let learnt = evaluate(seed, 0..EVALUATION, |state| learner.greedy(state));
-    let solved_at = curve::solved_at(&returns).map_or("never".into(), |n| n.to_string());
+    // Gymnasium calls the task solved at this running mean.
+    let is_solved = |&n: &usize| running_mean(&returns[..n]) >= REWARD_THRESHOLD;
+    let solved_at = (LATEST..=returns.len()).find(is_solved);
+    let solved_at = solved_at.map_or("never".into(), |n| n.to_string());
     if options.quiet {
         let Returns { mean, sd, misses } = learnt;
         eprintln!("learnt in {seconds:.2} s");
@@ -119,36 +113,15 @@ fn run<const S: usize, const T: usize, const N: usize>(
     row("learnt", learnt);
     row("torque against θ̇1", evaluate(seed, 0..EVALUATION, |state| bang_bang(state.dtheta1)));
     row("random", evaluate(seed, 0..EVALUATION, |_| Action::sample(&mut actions)));
-    if let Some(depth) = options.plan {
-        let mut search = Search::default();
-        let planned = evaluate(seed, (0..EVALUATION).progress(), |state| {
-            search.choose(*state, depth, |state| learner.value(state))
-        });
-        row("planned", planned);
-    }
     println!();
-    draw(&learner, &returns, options)
+    draw(&learner, options)
 }
 
-/// Draws the pictures, and prints a line for each.
+/// Draws a greedy episode.
 fn draw<const S: usize, const T: usize>(
     learner: &QLambda<S, T>,
-    returns: &[f32],
     options: &Options,
 ) -> anyhow::Result<()> {
-    let save = |name: &str, svg: String, content: &str| {
-        write(Path::new(name), svg)?;
-        println!("{name}: {content}");
-        anyhow::Ok(())
-    };
-    if !returns.is_empty() {
-        let curve = svg((900, 480), |area| pictures::draw_curve(area, returns))?;
-        let content = format!("the returns of {} episodes", returns.len());
-        save("learning_curve.svg", curve, &content)?;
-    }
-    let values = svg((680, 720), |area| pictures::draw_values(area, |state| learner.value(state)))?;
-    save("values.svg", values, "the learnt values of states at rest")?;
-
     let mut env = evaluation(&options.seed);
     let mut states = Vec::new();
     play(&mut env, |state| {
@@ -156,8 +129,9 @@ fn draw<const S: usize, const T: usize>(
         learner.greedy(state)
     });
     states.push(env.state().cast());
-    let content = format!("a greedy episode, {} steps", env.elapsed_steps());
-    save("swing_up.svg", animation::svg(&states, animation::DELAY), &content)
+    write(Path::new("swing_up.svg"), animation::svg(&states, animation::DELAY))?;
+    println!("swing_up.svg: a greedy episode, {} steps", env.elapsed_steps());
+    Ok(())
 }
 
 /// Returns the return of each episode.
@@ -188,10 +162,16 @@ fn train<const S: usize, const T: usize>(
             println!("steps {steps} greedy_mean {mean:.2}");
         }
         if !bar.is_hidden() {
-            bar.set_message(format!("{:.0}", curve::running_mean(&returns)));
+            bar.set_message(format!("{:.0}", running_mean(&returns)));
         }
         bar.set_position(done.min(length).into());
     }
     bar.finish();
     returns
+}
+
+/// The mean of the latest returns. They are integers, so the sum is exact.
+fn running_mean(returns: &[f32]) -> f32 {
+    let latest = &returns[returns.len().saturating_sub(LATEST)..];
+    latest.iter().sum::<f32>() / latest.len() as f32
 }
