@@ -13,8 +13,9 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::engine::{AnyTask, Engine, Inputs, with_batch};
+use crate::engine::{Engine, Inputs, out_of_memory, with_batch};
 use crate::pool::Pool;
+use crate::task::AnyTask;
 use crate::{alone, check_states, load, places, rejected, render, save};
 
 #[pyclass(module = "acrobot_rs._native")]
@@ -30,15 +31,13 @@ pub struct Batch {
 impl Batch {
     #[new]
     #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed="0", max_episode_steps=NonZeroU32::MAX,
-        mode="NextStep", task="acrobot", arithmetic="float32", continuous=false,
-        threads=NonZeroU32::MIN))]
+        mode="NextStep", kind=("acrobot", "float32"), continuous=false, threads=NonZeroU32::MIN))]
     fn new(
         num_envs: NonZeroU32,
         seed: &str,
         max_episode_steps: NonZeroU32,
         mode: &str,
-        task: &str,
-        arithmetic: &str,
+        kind: (&str, &str),
         continuous: bool,
         threads: NonZeroU32,
     ) -> PyResult<Self> {
@@ -47,8 +46,9 @@ impl Batch {
             "SameStep" => Autoreset::SameStep,
             _ => Autoreset::Disabled,
         };
-        let (len, task) = (num_envs.get() as usize, AnyTask::named(task));
-        let mut engine = Engine::new(arithmetic, task, len, parse(seed)?)?;
+        let ((task, arithmetic), len) = (kind, num_envs.get() as usize);
+        let engine = Engine::new(arithmetic, AnyTask::named(task), len, parse(seed)?);
+        let mut engine = engine.map_err(out_of_memory)?;
         with_batch!(&mut engine, many => {
             many.batch.set_max_steps(max_episode_steps);
             many.batch.set_autoreset(mode);

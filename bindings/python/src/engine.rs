@@ -2,11 +2,10 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Damped, Host, Numbers, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
 use acrobot::batch::{Autoreset, Member, StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::rand_core::Rng;
-use acrobot::task::{Balance, Draw, Draws, Gymnasium, ResetBounds, Seen, Swingup, Task};
+use acrobot::task::{Draw, Draws};
 use acrobot::{Acrobot, Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -15,9 +14,8 @@ use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, torque_of, with,
-};
+use crate::task::AnyTask;
+use crate::{InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, with};
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
 #[derive(FromPyObject)]
@@ -42,78 +40,7 @@ impl<'py> Inputs<'py> {
     }
 }
 
-/// The task of a batch. A value and not a type, so that a step is compiled once for all tasks.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum AnyTask {
-    Gymnasium,
-    Swingup,
-    Balance,
-}
-
-/// Computes something with the type of the task.
-macro_rules! with_task {
-    ($task:expr, $is:ident => $result:expr) => {
-        match $task {
-            AnyTask::Gymnasium => {
-                type $is = Gymnasium;
-                $result
-            }
-            AnyTask::Swingup => {
-                type $is = Swingup;
-                $result
-            }
-            AnyTask::Balance => {
-                type $is = Balance;
-                $result
-            }
-        }
-    };
-}
-
-impl AnyTask {
-    pub fn named(name: &str) -> Self {
-        match name {
-            Swingup::NAME => Self::Swingup,
-            Balance::NAME => Self::Balance,
-            _ => Self::Gymnasium,
-        }
-    }
-}
-
-impl Task for AnyTask {
-    const NAME: &'static str = "any";
-    const DEFAULT: Self = Self::Gymnasium;
-    const MAX_STEPS: NonZeroU32 = Gymnasium::MAX_STEPS;
-
-    type Observation = [f32; 6];
-
-    fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
-        with_task!(self, Is => Is::DEFAULT.draw(bounds, rng))
-    }
-
-    #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
-        with_task!(self, Is => Is::DEFAULT.observe::<A, V>(seen))
-    }
-
-    #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
-        with_task!(self, Is => Is::DEFAULT.ended::<A, V>(seen))
-    }
-
-    #[inline(always)]
-    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
-        &self,
-        seen: &Seen<V>,
-        params: &Params<V>,
-        torque: V,
-        ended: V::Mask,
-    ) -> V::Single {
-        with_task!(self, Is => Is::DEFAULT.reward::<A, V>(seen, params, torque, ended))
-    }
-}
-
-/// A batch in one of three arithmetics. A friction of 0 takes 2 % of a step.
+/// A batch in one of three arithmetics. All have friction, which takes 2 % of a step where it is 0.
 #[derive(Serialize, Deserialize)]
 pub enum Engine {
     Float32(Many<Damped<Fast>>),
@@ -123,7 +50,12 @@ pub enum Engine {
 }
 
 impl Engine {
-    pub fn new(arithmetic: &str, task: AnyTask, len: usize, seed: SeedSequence) -> PyResult<Self> {
+    pub fn new(
+        arithmetic: &str,
+        task: AnyTask,
+        len: usize,
+        seed: SeedSequence,
+    ) -> Result<Self, Error> {
         Ok(match arithmetic {
             "float64" => Self::Float64(Many::new(task, len, seed)?),
             "gymnasium" => Self::Gymnasium(Many::new(task, len, seed)?),
@@ -184,32 +116,29 @@ impl<A: Arithmetic> TryFrom<Saved<A>> for Many<A> {
     fn try_from(
         Saved { task, max_steps, autoreset, draws, members }: Saved<A>,
     ) -> Result<Self, Error> {
-        let mut batch = VecBatch::new(SeedSequence::new(0), members.len())?;
-        batch.set_task(task);
-        batch.set_reset_bounds(with_task!(task, Is => Is::RESET_BOUNDS));
-        batch.set_max_steps(max_steps);
+        let mut many = Self::new(task, members.len(), SeedSequence::new(0))?;
+        many.batch.set_max_steps(max_steps);
         if let Some(first) = members.first() {
-            batch.set_params(first.params)?;
+            many.batch.set_params(first.params)?;
         }
         if draws.is_some() {
-            batch.own_params()?;
+            many.batch.own_params()?;
         }
         for (index, member) in members.into_iter().enumerate() {
-            batch.set_member(index, member)?;
+            many.batch.set_member(index, member)?;
         }
-        batch.set_draws(draws.map_or(Ok(Draws::NONE), Draws::new)?)?;
-        batch.set_autoreset(autoreset);
-        Ok(Self { batch, actions: Vec::new(), torques: Vec::new() })
+        many.batch.set_draws(draws.map_or(Ok(Draws::NONE), Draws::new)?)?;
+        many.batch.set_autoreset(autoreset);
+        Ok(many)
     }
 }
 
 impl<A: Arithmetic> Many<A> {
-    pub fn new(task: AnyTask, len: usize, seed: SeedSequence) -> PyResult<Self> {
-        let mut batch = VecBatch::new(seed, len).map_err(out_of_memory)?;
+    fn new(task: AnyTask, len: usize, seed: SeedSequence) -> Result<Self, Error> {
+        let mut batch = VecBatch::new(seed, len)?;
         batch.set_task(task);
-        let (params, bounds) = with_task!(task, Is => (Is::PARAMS, Is::RESET_BOUNDS));
-        batch.set_params(params.cast()).map_err(rejected)?;
-        batch.set_reset_bounds(bounds);
+        batch.set_params(task.params().cast())?;
+        batch.set_reset_bounds(task.bounds());
         Ok(Self { batch, actions: Vec::new(), torques: Vec::new() })
     }
 
@@ -332,7 +261,7 @@ impl<A: Arithmetic> Many<A> {
                     |torque| !torque.is_nan(),
                     |index, torque| {
                         let (low, high) = if is_own { bounds(index) } else { first };
-                        A::Scalar::from_f64(torque_of(task, torque.into(), low, high))
+                        A::Scalar::from_f64(task.torque(torque.into(), low, high))
                     },
                     match task {
                         AnyTask::Swingup => "a number from -1 to 1",
@@ -375,7 +304,7 @@ fn read<T: Copy + std::fmt::Display, U>(
     Ok(())
 }
 
-fn out_of_memory(error: Error) -> PyErr {
+pub fn out_of_memory(error: Error) -> PyErr {
     match error {
         Error::OutOfMemory { len } => {
             let rule = "so few that they fit into memory";

@@ -5,6 +5,7 @@ mod control;
 mod engine;
 mod pool;
 mod single;
+mod task;
 
 use std::fmt::{self, Display, Formatter};
 
@@ -13,7 +14,6 @@ use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::Dynamics;
 use acrobot::task::{Balance, Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::{Acrobot, Error, Params, State};
-use engine::AnyTask;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
@@ -65,20 +65,6 @@ const BUSY: &str = "another thread is stepping or resetting an environment; \
 fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<PyRefMut<'py, T>> {
     let busy = |_| PyRuntimeError::new_err(BUSY);
     object.try_borrow_mut().map_err(busy)
-}
-
-/// The torque of a continuous action, N m, which is within the smallest and the largest torque.
-/// In a swing-up the action 1 is the largest torque, −1 the smallest and 0 none. In other tasks
-/// actions are torques.
-fn torque_of(task: AnyTask, action: f64, low: f64, high: f64) -> f64 {
-    let torque = match task {
-        AnyTask::Swingup => match action.clamp(-1.0, 1.0) {
-            action if action < 0.0 => action * -low,
-            action => action * high,
-        },
-        _ => action,
-    };
-    torque.max(low).min(high)
 }
 
 /// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both

@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
-use crate::engine::AnyTask;
+use crate::task::AnyTask;
 use crate::{
     InvalidAction, Name, Params, alone, convert, invalid, load, must_be, named, rejected, render,
-    save, shown, torque_of, with,
+    save, shown, with,
 };
 
 pyo3::import_exception!(gymnasium.error, ResetNeeded);
@@ -239,7 +239,7 @@ impl Acrobot {
         let torques = &self.inner.torques;
         let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
         let high = torques.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        torque_of(self.inner.acrobot.task(), action, low, high)
+        self.inner.acrobot.task().torque(action, low, high)
     }
 }
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from types import SimpleNamespace as Attributes
 
 import acrobot_rs
-import gymnasium as gym
 import numpy as np
 import pytest
 from acrobot_rs import policy

@@ -98,7 +98,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         mode = AutoresetMode(autoreset_mode)
         arithmetic = "gymnasium" if gymnasium_episodes else "float64" if float64 else "float32"
         native = Batch(
-            *(num_envs, str(self.np_random_seed), limit, mode.value, self._TASK, arithmetic),
+            *(num_envs, str(self.np_random_seed), limit, mode.value, (self._TASK, arithmetic)),
             *(self._CONTINUOUS, threads),
         )
         self.autoreset_mode = mode
