@@ -28,8 +28,6 @@ pyo3::import_exception!(gymnasium.error, InvalidAction);
 #[pymodule(gil_used = false)]
 mod _native {
     #[pymodule_export]
-    const BUSY: &str = super::BUSY;
-    #[pymodule_export]
     const REWARD_THRESHOLD: f32 = acrobot::REWARD_THRESHOLD;
     #[pymodule_export]
     const MAX_STEPS: u32 = Gymnasium::MAX_STEPS.get();

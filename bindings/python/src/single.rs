@@ -17,12 +17,6 @@ use crate::{
 
 pyo3::import_exception!(gymnasium.error, ResetNeeded);
 
-/// One acrobot: its parameters and its state. Random numbers come from the environment's generator.
-#[pyclass(module = "acrobot_rs._native")]
-pub struct Acrobot {
-    pub inner: Inner,
-}
-
 /// An acrobot of a task.
 #[derive(Clone, Serialize, Deserialize)]
 pub enum One {
@@ -80,9 +74,10 @@ impl One {
     }
 }
 
-/// What a snapshot contains.
+/// One acrobot: its parameters and its state. Random numbers come from the environment's generator.
+#[pyclass(module = "acrobot_rs._native")]
 #[derive(Clone, Serialize, Deserialize)]
-pub struct Inner {
+pub struct Acrobot {
     /// Whether actions are torques.
     continuous: bool,
     /// Without noise and with the default torques: the crate has three.
@@ -93,7 +88,7 @@ pub struct Inner {
     started: bool,
 }
 
-impl Inner {
+impl Acrobot {
     /// Checks the torques and the noise.
     fn validate(&self) -> PyResult<()> {
         if self.torques.is_empty() {
@@ -117,49 +112,43 @@ impl Acrobot {
     #[pyo3(signature = (continuous = false, task = "acrobot"))]
     fn new(continuous: bool, task: &str) -> Self {
         let acrobot = One::new(task);
-        let inner = Inner {
-            continuous,
-            torques: acrobot.params().torques.into(),
-            acrobot,
-            noise: 0.0,
-            started: false,
-        };
-        Self { inner }
+        let torques = acrobot.params().torques.into();
+        Self { continuous, acrobot, torques, noise: 0.0, started: false }
     }
 
     fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let mut this = alone(slf)?;
-        let mut inner = this.inner.clone();
+        let mut changed = this.clone();
         match name {
-            "AVAIL_TORQUE" => inner.torques = convert(name, "a sequence of numbers", value)?,
-            "torque_noise_max" => inner.noise = convert(name, "a number", value)?,
+            "AVAIL_TORQUE" => changed.torques = convert(name, "a sequence of numbers", value)?,
+            "torque_noise_max" => changed.noise = convert(name, "a number", value)?,
             _ => {
-                let params = with::<f64>(inner.acrobot.params(), Name(name, [None; 2]), value)?;
-                inner.acrobot.set_params(params)?;
+                let params = with::<f64>(changed.acrobot.params(), Name(name, [None; 2]), value)?;
+                changed.acrobot.set_params(params)?;
             }
         }
-        inner.validate()?;
-        this.inner = inner;
+        changed.validate()?;
+        *this = changed;
         Ok(())
     }
 
     #[getter]
     fn state(slf: &Bound<'_, Self>) -> PyResult<Option<[f64; 4]>> {
         let this = alone(slf)?;
-        Ok(this.inner.started.then(|| this.inner.acrobot.state().into()))
+        Ok(this.started.then(|| this.acrobot.state().into()))
     }
 
     #[setter]
     fn set_state(slf: &Bound<'_, Self>, state: [f64; 4]) -> PyResult<()> {
         let mut this = alone(slf)?;
-        this.inner.acrobot.set_state(state.into())?;
-        this.inner.started = true;
+        this.acrobot.set_state(state.into())?;
+        this.started = true;
         Ok(())
     }
 
     fn observation<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let this = alone(slf)?;
-        let observation = with_one!(&this.inner.acrobot, acrobot => acrobot.observation());
+        let observation = with_one!(&this.acrobot, acrobot => acrobot.observation());
         Ok(PyArray1::from_slice(slf.py(), &observation))
     }
 
@@ -171,13 +160,13 @@ impl Acrobot {
         action: &Bound<'py, PyAny>,
     ) -> PyResult<impl IntoPyObject<'py>> {
         let py = slf.py();
-        let continuous = alone(slf)?.inner.continuous;
+        let continuous = alone(slf)?.continuous;
         // The conversion can be Python code.
         let number = continuous.then(|| number(env, action)).transpose()?;
         let mut this = alone(slf)?;
-        if !this.inner.started {
+        if !this.started {
             let message = "the environment has no state yet; call reset before step";
-            return Err(match this.inner.acrobot.task() {
+            return Err(match this.acrobot.task() {
                 AnyTask::Gymnasium => PyAssertionError::new_err(message), // as Gymnasium's
                 _ => ResetNeeded::new_err(message),
             });
@@ -186,7 +175,7 @@ impl Acrobot {
             Some(torque) => this.clipped(torque),
             None => this.torque(action)?,
         };
-        let noise = this.inner.noise;
+        let noise = this.noise;
         if noise > 0.0 {
             drop(this); // the generator is Python code
             let rng = env.getattr("np_random")?;
@@ -194,14 +183,14 @@ impl Acrobot {
             torque += draw;
             this = alone(slf)?;
         }
-        let step = this.inner.acrobot.step(torque)?;
+        let step = this.acrobot.step(torque)?;
         let observation = PyArray1::from_slice(py, &step.observation);
         Ok((observation, f64::from(step.reward), step.terminated, false, PyDict::new(py)))
     }
 
     fn render<'py>(slf: &Bound<'py, Self>, mode: &str) -> PyResult<Bound<'py, PyAny>> {
         let this = alone(slf)?;
-        let acrobot = &this.inner.acrobot;
+        let acrobot = &this.acrobot;
         render(slf.py(), acrobot.params(), acrobot.state(), mode)
     }
 
@@ -211,13 +200,13 @@ impl Acrobot {
     }
 
     fn __getstate__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
-        save(slf.py(), &alone(slf)?.inner)
+        save(slf.py(), &*alone(slf)?)
     }
 
     fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
-        let inner: Inner = load(bytes)?;
-        inner.validate()?;
-        alone(slf)?.inner = inner;
+        let loaded: Self = load(bytes)?;
+        loaded.validate()?;
+        *alone(slf)? = loaded;
         Ok(())
     }
 }
@@ -227,19 +216,19 @@ impl Acrobot {
     #[inline]
     fn torque(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
         let number = action.extract::<usize>().ok();
-        let torque = number.and_then(|number| self.inner.torques.get(number));
+        let torque = number.and_then(|number| self.torques.get(number));
         torque.copied().ok_or_else(|| {
-            let rule = format_args!("an integer from 0 to {}", self.inner.torques.len() - 1);
+            let rule = format_args!("an integer from 0 to {}", self.torques.len() - 1);
             InvalidAction::new_err(must_be("action", rule, shown(action)))
         })
     }
 
     /// The torque of a continuous action, N m.
     fn clipped(&self, action: f64) -> f64 {
-        let torques = &self.inner.torques;
+        let torques = &self.torques;
         let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
         let high = torques.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        self.inner.acrobot.task().torque(action, low, high)
+        self.acrobot.task().torque(action, low, high)
     }
 }
 

@@ -180,12 +180,6 @@ def test_threads_in_a_forked_process():
         child.join()
 
 
-BUSY = (
-    "another thread is stepping or resetting an environment; change parameters and "
-    "call methods between its steps, or make an environment for each thread"
-)
-
-
 @pytest.mark.parametrize("kind", [AcrobotEnv, AcrobotVectorEnv])
 def test_a_call_of_another_thread_during_a_call_is_rejected(kind):
     """A step of many lets other threads run, and so does this conversion of a number."""
@@ -201,7 +195,8 @@ def test_a_call_of_another_thread_during_a_call_is_rejected(kind):
             return 2.0
 
     env._native.set("LINK_MASS_1", Mass() if kind is AcrobotEnv else [Mass()])
-    assert [(type(each), str(each)) for each in errors] == [(RuntimeError, BUSY)] * 5
+    assert [type(each) for each in errors] == [RuntimeError] * 5
+    assert all(str(each).startswith("another thread is stepping or") for each in errors)
     assert env.dt == 0.2
 
 
@@ -212,6 +207,7 @@ def test_steps_in_float64_are_gymnasiums_but_for_rounding():
         each.reset(seed=0)
         each.state = states
     found, expected = (each.step(np.arange(500) % 3) for each in (envs, twin))
+    assert found[1].dtype == np.float32
     for one, other, bound in zip(found[:4], expected[:4], (1e-6, 0, 0, 0), strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=bound)
     assert np.abs(envs.state - twin.state).max() < 1e-12
