@@ -1,9 +1,6 @@
 """Records torch's actions on 10,000 observations: writes actions.bin beside policy.bin, which it
 reads.
 
-    python ../../bindings/python/train_ppo.py 3 --save policy.bin
-    python record.py
-
 Each byte has four actions, the first in its lowest bits. 3 stands for a tie, two scores that differ
 by less than 1e-4. The observations are those of child 0 of seed 1 under random actions with seed 1.
 """

@@ -19,7 +19,7 @@ pub fn compute<'py>(
     acrobot: PyRef<'py, Acrobot>,
     rows: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let (py, one) = (acrobot.py(), acrobot.inner.acrobot.clone());
+    let (py, one) = (acrobot.py(), acrobot.acrobot.clone());
     drop(acrobot); // other threads may step it
     let rows = rows.as_slice()?.chunks_exact(rows.shape()[1]);
     let results: PyResult<_> = py.detach(|| {
@@ -100,7 +100,7 @@ impl Planner {
         pairs: [[f32; 2]; 2],
         weights: [f32; 5],
     ) -> PyResult<Self> {
-        let params = acrobot.inner.acrobot.params().cast();
+        let params = acrobot.acrobot.params().cast();
         let Cost { height: reach, margin: tenth, .. } = Cost::new(&params);
         let [angles, velocities] = pairs;
         let [torque, torque_change, power, below, arrival] = weights;

@@ -5,6 +5,7 @@ mod control;
 mod engine;
 mod pool;
 mod single;
+mod task;
 
 use std::fmt::{self, Display, Formatter};
 
@@ -26,8 +27,6 @@ pyo3::import_exception!(gymnasium.error, InvalidAction);
 
 #[pymodule(gil_used = false)]
 mod _native {
-    #[pymodule_export]
-    const BUSY: &str = super::BUSY;
     #[pymodule_export]
     const REWARD_THRESHOLD: f32 = acrobot::REWARD_THRESHOLD;
     #[pymodule_export]
@@ -64,20 +63,6 @@ const BUSY: &str = "another thread is stepping or resetting an environment; \
 fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<PyRefMut<'py, T>> {
     let busy = |_| PyRuntimeError::new_err(BUSY);
     object.try_borrow_mut().map_err(busy)
-}
-
-/// The torque of a continuous action, N m, which is within the smallest and the largest torque.
-/// In a swing-up the action 1 is the largest torque, −1 the smallest and 0 none. In other tasks
-/// actions are torques.
-fn torque_of(task: &str, action: f64, low: f64, high: f64) -> f64 {
-    let torque = match task {
-        Swingup::NAME => match action.clamp(-1.0, 1.0) {
-            action if action < 0.0 => action * -low,
-            action => action * high,
-        },
-        _ => action,
-    };
-    torque.max(low).min(high)
 }
 
 /// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both
@@ -239,17 +224,20 @@ fn render<'py>(
     }
 }
 
-/// Serializes a snapshot, for pickle. The crate's snapshots inside have a version.
-fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {
-    Ok(PyBytes::new(py, &to_bytes(snapshot)?))
-}
+/// Changes when a snapshot of another layout would be read.
+const SNAPSHOT_VERSION: u8 = 5;
 
-fn to_bytes(snapshot: &impl Serialize) -> PyResult<Vec<u8>> {
-    postcard::to_stdvec(snapshot).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+/// Serializes a snapshot, for pickle.
+fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {
+    let bytes = postcard::to_stdvec(&(SNAPSHOT_VERSION, snapshot));
+    Ok(PyBytes::new(py, &bytes.map_err(|error| PyRuntimeError::new_err(error.to_string()))?))
 }
 
 /// Deserializes a snapshot.
 fn load<T: DeserializeOwned>(bytes: &[u8]) -> PyResult<T> {
-    postcard::from_bytes(bytes)
-        .map_err(|error| PyValueError::new_err(format!("the snapshot is damaged: {error}")))
+    match postcard::from_bytes(bytes) {
+        Ok((SNAPSHOT_VERSION, snapshot)) => Ok(snapshot),
+        Ok(_) => Err(PyValueError::new_err("the snapshot is of another version")),
+        Err(error) => Err(PyValueError::new_err(format!("the snapshot is damaged: {error}"))),
+    }
 }

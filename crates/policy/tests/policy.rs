@@ -138,7 +138,7 @@ fn the_trained_policy_swings_up() {
     assert_eq!(steps, [101, 88, 96, 72, 72]);
 }
 
-/// As the tests of Python and of the npm package do with the same recording.
+/// As the test of the npm package does with the same recording.
 #[test]
 fn sums_that_overflow_play_no_torque() {
     for line in include_str!("../overflow.txt").lines() {
