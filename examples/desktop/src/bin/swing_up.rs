@@ -9,8 +9,7 @@
 //! With `--quiet` it prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the
 //! first n ≥ 100 for which the mean return of episodes n − 99 to n is −100 or better. R and S are
 //! the mean and standard deviation of 1,000 greedy episodes from initial states that it was not
-//! trained on, and K of these missed the goal. The time of learning goes to stderr. With
-//! `--evaluate N` a line `steps M greedy_mean R` for every N steps comes before.
+//! trained on, and K of these missed the goal. The time of learning goes to stderr.
 //!
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into
 //! torque against θ̇1. This is the baseline.
@@ -38,9 +37,6 @@ struct Options {
     /// Steps of learning, instead of episodes. The last episode is finished.
     #[arg(long)]
     steps: Option<u32>,
-    /// Steps of learning from evaluation to evaluation. Without it there is one at the end.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
-    evaluate: Option<u32>,
     /// Seed of learning and evaluation: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
@@ -148,19 +144,11 @@ fn train<const S: usize, const T: usize>(
     let (mut returns, mut steps, mut done) = (Vec::new(), 0, 0);
     while done < length {
         returns.push(learner.learn(&mut env));
-        let before = steps;
         steps += env.elapsed_steps();
         done = match options.budget() {
             Budget::Episodes(_) => returns.len() as u32,
             Budget::Steps(_) => steps,
         };
-        if let Some(every) = options.evaluate
-            && steps / every > before / every
-        {
-            let Returns { mean, .. } =
-                evaluate(&options.seed, 0..EVALUATION, |state| learner.greedy(state));
-            println!("steps {steps} greedy_mean {mean:.2}");
-        }
         if !bar.is_hidden() {
             bar.set_message(format!("{:.0}", running_mean(&returns)));
         }
