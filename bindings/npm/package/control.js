@@ -16,7 +16,7 @@ const COST = [
   "below", "height", "margin", "arrival",
 ];
 /** The first words of a regulator's weights and of a state. */
-const [WEIGHTS, STATE_WORD] = [20, 64];
+const [WEIGHTS, STATE_WORD] = [19, 64];
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
 
 /** Rust's messages, by the kind of error less 4. */
@@ -43,22 +43,6 @@ function acceptAll(kind, given) {
   throw new RangeError(MESSAGES[kind - 4](value, camelCase(text(1)), other));
 }
 
-const row = (what, array) => elements(what, array, 4, isNumber, "must be a number");
-
-const matrix = (what, rows) =>
-  elements(what, rows, 4, () => true).flatMap((each, i) => row(`${what}[${i}]`, each));
-
-function weights(q, r) {
-  checkNumber("r", r);
-  return [...matrix("q", q), r];
-}
-
-/** The matrix and the vector that the module has written. */
-const results = () => [
-  [0, 4, 8, 12].map((from) => numbers().slice(from, from + 4)),
-  numbers().slice(16, 20),
-];
-
 /** Writes a state. It comes after all other arguments, because reading these can run code. */
 function writeState(state) {
   const given = checkedState(state);
@@ -66,39 +50,20 @@ function writeState(state) {
   return given;
 }
 
-/** Calls a function of the module for a pendulum. The last of the weights is R. */
-function compute(name, state, torque, params, flag, weights = []) {
+export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
   const names = parameters();
   const given = readSlots("params", params, names);
+  const weights = elements("q", q, 4, () => true).flatMap((row, i) =>
+    elements(`q[${i}]`, row, 4, isNumber, "must be a number"),
+  );
+  checkNumber("r", r);
   checkNumber("torque", torque);
   const at = writeState(state);
   const mask = writeSlots(given, names);
-  numbers().set(weights, WEIGHTS);
-  acceptAll(wasm()[name](mask, torque, flag), { ...given, ...at, torque, r: weights.at(-1) });
-  return results();
-}
-
-export function linearize(state, torque, params) {
-  const [a, b] = compute("linear_model", state, torque, params, false);
-  return { a, b };
-}
-
-export function linearizeStep(state, torque, params) {
-  const [a, b] = compute("linear_model", state, torque, params, true);
-  return { a, b };
-}
-
-export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
-  const [costToGo, gain] = compute("regulator", state, torque, params, false, weights(q, r));
-  return { gain, costToGo };
-}
-
-export function lqr(model, q, r) {
-  const words = [...matrix("a", model?.a), ...row("b", model?.b), ...weights(q, r)];
-  numbers().set(words);
-  acceptAll(wasm().regulator(0, 0, true), { r });
-  const [costToGo, gain] = results();
-  return { gain, costToGo };
+  numbers().set([...weights, r], WEIGHTS);
+  acceptAll(wasm().regulator(mask, torque), { ...given, ...at, torque, r });
+  const [a, b, c, d, gain] = [0, 4, 8, 12, 16].map((from) => numbers().slice(from, from + 4));
+  return { gain, costToGo: [a, b, c, d] };
 }
 
 function lengthOf(plan) {
@@ -124,7 +89,7 @@ export class Planner extends Kept {
     const what = "the largest torque";
     checkNumber(what, limit);
     const mask = writeSlots(given, [...names, ...COST]);
-    acceptAll(wasm().planner_new(mask, limit), { ...given, [what]: limit });
+    acceptAll(wasm().make(mask, limit), { ...given, [what]: limit });
     super("planner", allocated("planners", 1, integers()[0]));
   }
 
@@ -135,7 +100,7 @@ export class Planner extends Kept {
   /** Copies the module's plan to the arrays of one. */
   #read(plan, steps) {
     for (let step = 0; step < steps; step++) {
-      call(this, "read", step);
+      call(this, "read_knot", step);
       let from = 0;
       for (const [name, size] of Object.entries(PLAN)) {
         for (let i = 0; i < size; i++) plan[name][size * step + i] = numbers()[from++];
@@ -167,7 +132,7 @@ export class Planner extends Kept {
     this.#resize(rows.length);
     rows.forEach((row, step) => {
       numbers().set(row);
-      call(this, "set", step);
+      call(this, "set_knot", step);
     });
     acceptAll(call(this, "improve", iterations), state);
     const [cost] = numbers();

@@ -176,7 +176,10 @@ declare abstract class Kept {
 /** One acrobot. Invalid arguments throw a `RangeError` or `TypeError`, and change nothing. */
 export class Acrobot extends Kept {
   constructor(options?: Options);
-  /** A new acrobot that continues from a snapshot with the same bits. */
+  /**
+   * A new acrobot that continues from a snapshot with the same bits, and draws no parameters until
+   * `setDraws`. Throws if the snapshot is damaged or of another version.
+   */
   static restore(snapshot: Uint8Array): Acrobot;
   /** Begins an episode, without a seed from the next random numbers. Returns the observation. */
   reset(seed?: Seed): Float32Array;
@@ -206,11 +209,6 @@ export class Acrobot extends Kept {
   get maxSteps(): number;
   /** About 160 bytes, without draws: Rust's `TimeLimit<Acrobot<Fast>>` in postcard with CRC-32. */
   snapshot(): Uint8Array;
-  /**
-   * Continues from a snapshot, and draws no parameters until `setDraws`. Throws if it is damaged or
-   * of another version or task.
-   */
-  restore(snapshot: Uint8Array): void;
   /** Draws the acrobot, with an arrow for the torque of the last step. */
   draw(context: Context, options?: DrawOptions): void;
 }
