@@ -75,11 +75,6 @@ export class Planner {
   constructor(params: Readonly<Partial<Params>>, limit: number, cost?: Readonly<Partial<Cost>>);
   /** A plan from a state to upright, or `null` if no try has found one. May take seconds. */
   plan(start: Readonly<State>, options: PlanOptions): Plan | null;
-  /**
-   * Improves a plan in place, which then begins in the state `start`. Returns its cost: the lower,
-   * the better.
-   */
-  improve(start: Readonly<State>, iterations: number, plan: Plan): number;
   /** The torque at a step, N m: that of the plan, then that of the regulator. Unlimited. */
   follow(plan: Plan, step: number, state: Readonly<State>): number;
   /** The torque without a plan, N m, up to the largest: pumps energy, and then regulates. */

@@ -66,21 +66,8 @@ export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
   return { gain, costToGo: [a, b, c, d] };
 }
 
-function lengthOf(plan) {
-  const length = plan?.torques?.length;
-  if (length === undefined) throw invalid("plan must be one that a planner returns", plan, []);
-  return length;
-}
-
 /** The arrays of a plan, with their elements for a step: a row in the module. */
 const PLAN = { states: 4, torques: 1, gains: 4 };
-
-function rowOf(plan, step) {
-  const row = Object.entries(PLAN).flatMap(([name, size]) =>
-    Array.from({ length: size }, (_, i) => plan[name]?.[size * step + i]),
-  );
-  return elements(`plan[${step}]`, row, 9, isFinite32, "must be a finite number");
-}
 
 export class Planner extends Kept {
   constructor(params, limit, cost = {}) {
@@ -93,61 +80,44 @@ export class Planner extends Kept {
     super("planner", allocated("planners", 1, integers()[0]));
   }
 
-  #resize(steps) {
-    allocated("steps", steps, call(this, "resize", steps));
-  }
-
-  /** Copies the module's plan to the arrays of one. */
-  #read(plan, steps) {
-    for (let step = 0; step < steps; step++) {
-      call(this, "read_knot", step);
-      let from = 0;
-      for (const [name, size] of Object.entries(PLAN)) {
-        for (let i = 0; i < size; i++) plan[name][size * step + i] = numbers()[from++];
-      }
-    }
-  }
-
   plan(start, options) {
     const given = checked("options", options, ["tries", "seed", "steps"]);
     const { tries = 64, seed = randomSeed(), steps } = given;
     positive("tries", tries);
     positive("steps", steps);
     const state = writeState(start);
-    this.#resize(steps);
+    allocated("steps", steps, call(this, "resize", steps));
     const kind = call(this, "plan", writeSeed(seed), tries);
     if (kind === NOT_FOUND) return null;
     acceptAll(kind, state);
     const [length] = integers();
-    const [states, gains] = [4, 4].map((size) => new Float32Array(size * length));
-    const plan = { states, torques: new Float32Array(length), gains };
-    this.#read(plan, length);
+    const plan = {};
+    for (const [name, size] of Object.entries(PLAN)) plan[name] = new Float32Array(size * length);
+    for (let step = 0; step < length; step++) {
+      call(this, "read_knot", step);
+      let from = 0;
+      for (const [name, size] of Object.entries(PLAN)) {
+        plan[name].set(numbers().subarray(from, from + size), size * step);
+        from += size;
+      }
+    }
     return plan;
-  }
-
-  improve(start, iterations, plan) {
-    positive("iterations", iterations);
-    const rows = Array.from({ length: lengthOf(plan) }, (_, step) => rowOf(plan, step));
-    const state = writeState(start);
-    this.#resize(rows.length);
-    rows.forEach((row, step) => {
-      numbers().set(row);
-      call(this, "set_knot", step);
-    });
-    acceptAll(call(this, "improve", iterations), state);
-    const [cost] = numbers();
-    this.#read(plan, rows.length);
-    return cost;
   }
 
   follow(plan, step, state) {
     if (!Number.isInteger(step) || step < 0) {
       throw invalid("step must be an integer of at least 0", step);
     }
-    const isPlanned = step < lengthOf(plan);
-    const row = isPlanned ? rowOf(plan, step) : [];
+    const length = plan?.torques?.length;
+    if (length === undefined) throw invalid("plan must be one that a planner returns", plan, []);
+    const isPlanned = step < length;
+    const row = Object.entries(PLAN).flatMap(([name, size]) =>
+      Array.from({ length: isPlanned ? size : 0 }, (_, i) => plan[name]?.[size * step + i]),
+    );
+    const rule = "must be a finite number";
+    const knot = elements(`plan[${step}]`, row, isPlanned ? 9 : 0, isFinite32, rule);
     writeState(state);
-    numbers().set(row);
+    numbers().set(knot);
     return call(this, "follow", isPlanned);
   }
 

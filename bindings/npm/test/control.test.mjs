@@ -47,18 +47,12 @@ test("a plan, and an acrobot that follows it, are bit-identical to native ones",
   assert.ok(acrobot.tipHeight > 1.999);
 });
 
-test("a plan is improved in place for other weights and another start", () => {
-  const [planner, plan] = planned();
-  const before = { ...plan, torques: plan.torques.slice() };
+test("a cost's weights change the plan", () => {
+  const [, plan] = planned();
   const jumps = ({ torques }) =>
     torques.slice(1).reduce((sum, torque, i) => sum + (torque - torques[i]) ** 2, 0);
   const smooth = new Planner(PARAMS, 7, { torqueChange: 1, angles: [0.1, 0] });
-  const start = state(0.05);
-  const costs = [1, 30, 30].map((iterations) => smooth.improve(start, iterations, plan));
-  assert.ok(costs[0] > costs[1] && costs[1] >= costs[2], costs.join());
-  assert.ok(jumps(plan) < jumps(before) / 2);
-  assert.equal(plan.states[0], Math.fround(0.05));
-  assert.ok(planner.improve(start, 1, plan) !== costs[2]);
+  assert.ok(jumps(smooth.plan(HANGING, { steps: 1100, seed: 4 })) < jumps(plan) / 2);
 });
 
 test("without a plan, the torque pumps energy and then holds", () => {
@@ -92,13 +86,11 @@ test("a regulator holds the acrobots of both tasks", () => {
   assert.ok(Math.abs(up[0]) > 10 * Math.abs(down[0]));
 });
 
-test("invalid arguments are rejected with Rust's messages, and change no plan", () => {
+test("invalid arguments are rejected with Rust's messages", () => {
   const [planner, plan] = planned();
-  const before = structuredClone(plan);
   const make = (limit, cost) => () => new Planner(PARAMS, limit, cost);
   const hold = (q, r = 1, at = UPRIGHT, params = PARAMS) => () => regulator(params, q, r, at);
   const first = (...row) => [row, ...EYE.slice(1)];
-  const improve = (start, changes) => () => planner.improve(start, 1, { ...plan, ...changes });
   assertRejected([
     ["RangeError", "dt must be finite and above 0 s", ["-1", hold(EYE, 1, UPRIGHT, { dt: -1 })]],
     ["RangeError", "r must be finite and above 0 per (N m)²", ["-0.1", hold(EYE, -0.1)]],
@@ -123,7 +115,7 @@ test("invalid arguments are rejected with Rust's messages, and change no plan", 
     ["TypeError", "plan must be one that a planner returns",
       ["null", () => planner.follow(null, 0, HANGING)]],
     ["TypeError", "plan[0][5] must be a finite number",
-      ["undefined", improve(HANGING, { gains: [] })]],
+      ["undefined", () => planner.follow({ ...plan, gains: [] }, 0, HANGING)]],
     ["RangeError", "step must be an integer of at least 0",
       ["-1", () => planner.follow(plan, -1, HANGING)]],
   ]);
@@ -136,8 +128,6 @@ test("invalid arguments are rejected with Rust's messages, and change no plan", 
   }
   const reach = "the torque must reach each motion that grows or persists, but does not reach one";
   rejects(hold(EYE, 1, UPRIGHT, { gravity: 0 }), reach);
-  rejects(improve(state(0, 0, 1e30)), /^cost must be finite in each element, got /);
-  assert.deepEqual(plan, before);
   planner.free();
   planner.free();
   const message = "the planner has been freed";

@@ -28,7 +28,7 @@ const actions: Action[] = [energyLaw(acrobot), learner.act(acrobot)];
 
 using planner = new Planner(params, 2, { torqueChange: 1, angles: [0.1, 0] });
 const plan: Plan | null = planner.plan(state, { steps: 500, seed: 7n });
-const cost: number = plan ? planner.improve(state, 10, plan) : 0;
+const torque: number = plan ? planner.follow(plan, 0, state) : planner.decide(state);
 const eye = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
 const gain: Float32Array = regulator({ dt: 0.05 }, eye, 1).gain;
 
@@ -55,4 +55,4 @@ new Batch({ seed: 1 });
 // @ts-expect-error
 planner.follow(planner.plan(state, { steps: 500 }), 0, state);
 
-export { actions, cost, finals, gain, mode, step, task };
+export { actions, finals, gain, mode, step, task, torque };

@@ -7,7 +7,7 @@ import { attempt, parametersPanel } from "./parameters.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
 import { DEFAULTS, parseSeed } from "./settings.js";
 import { drawStage } from "./stage.js";
-import { download, trainingPanel } from "./training.js";
+import { trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -189,7 +189,7 @@ function start() {
     const verdicts = { goal: `Goal! ${game.steps} steps`, limit: "Out of time" };
     $("verdict").textContent = verdicts[game.end] ?? "";
     const between = calm.matches
-      ? "Reduced motion: the picture moves step by step, without a trail."
+      ? "Reduced motion: the picture moves step by step."
       : `The physics steps every ${game.params.dt} s. Between steps the picture is interpolated.`;
     $("between").textContent = `The red arrow is the torque. ${between}`;
     const bits = new Uint32Array(game.numbers.buffer);
@@ -226,7 +226,7 @@ function start() {
       next();
       $("link-field").hidden = hidden;
     }
-    drawStage(game, calm.matches ? 1 : Math.min(shown / dt, 1), !calm.matches);
+    drawStage(game, calm.matches ? 1 : Math.min(shown / dt, 1));
     if (dirty) update();
   };
 
@@ -349,7 +349,6 @@ function start() {
       shown(`The browser does not allow copying. Copy this link with ${content}`);
     }
   };
-  $("csv").onclick = () => download(`acrobot-${name(game.seed)}.csv`, game.csv());
 
   const training = trainingPanel(learner, {
     ready(policy) {

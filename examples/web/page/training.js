@@ -95,7 +95,14 @@ export function trainingPanel(learner, { ready, drive }) {
 
   $("train").onclick = () => (worker ? stop("stopped") : train());
   $("drive").onclick = drive;
-  $("save").onclick = () => download("weights.bin", weights);
+  $("save").onclick = () => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([weights]));
+    link.download = "weights.bin";
+    link.click();
+    // Later, because the browser may still be reading it.
+    setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  };
   $("choose").onclick = () => $("load").click();
   $("load").onchange = async ({ target }) => {
     const [file] = target.files;
@@ -114,13 +121,4 @@ export function trainingPanel(learner, { ready, drive }) {
   };
   new ResizeObserver(draw).observe($("curve"));
   return { draw };
-}
-
-export function download(name, content) {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([content]));
-  link.download = name;
-  link.click();
-  // Later, because the browser may still be reading it.
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }

@@ -1,11 +1,8 @@
-// What is touched, and the layout, on a phone and on a desktop. Leaves screenshots.
+// What is touched, and the layout, on a phone and on a desktop.
 
 import assert from "node:assert/strict";
-import { mkdirSync } from "node:fs";
-import { join } from "node:path";
-import { test } from "node:test";
 
-import { dist, linkedActions, onPage, paused, stepped, text } from "./player.mjs";
+import { linkedActions, onPage, paused, stepped, text } from "./player.mjs";
 
 const touched = { hasTouch: true, isMobile: true };
 const SCREENS = {
@@ -101,15 +98,7 @@ for (const [name, options] of Object.entries(SCREENS)) {
       await inView("stage");
     }
     await page.evaluate(() => scrollTo(0, 0));
-    mkdirSync(join(dist, "screenshots"), { recursive: true });
-    for (const colorScheme of ["light", "dark"]) {
-      await page.emulateMedia({ colorScheme });
-      await text(page, "#step");
-      const path = join(dist, "screenshots", `${name}-${colorScheme}.png`);
-      // A picture of a full page would end the emulation of touch.
-      await page.screenshot({ path, fullPage: !options.hasTouch });
-    }
-    const others = name === "desktop" ? [832, 1000, 1920] : [320, 568, 667, 932];
+    const others = name === "desktop" ? [832, 1000, 1920] : [320, 568, 932];
     for (const other of [width, ...others]) {
       await page.setViewportSize({ width: other, height });
       await text(page, "#step");

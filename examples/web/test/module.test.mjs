@@ -7,18 +7,12 @@ import { test } from "node:test";
 import { randoms } from "../../../bindings/npm/test/module.mjs";
 import { Acrobot } from "../dist/acrobot-rs/index.js";
 import { Learner } from "../dist/acrobot-rs/policies.js";
-import { Game, shortest } from "../dist/game.js";
+import { Game } from "../dist/game.js";
 import { decodeRun, encodeRun } from "../dist/link.js";
 import { ticks } from "../dist/plot.js";
 import { DEFAULTS } from "../dist/settings.js";
 import { BASELINE } from "../dist/training.js";
 import { ACTIONS } from "./native.mjs";
-
-test("numbers are written with the fewest digits that keep single precision", () => {
-  for (const text of ["0", "-0", "0.1", "-0.054791212", "3.1415927", "1e-7", "16777216"]) {
-    assert.equal(shortest(Math.fround(Number(text))), text);
-  }
-});
 
 test("a plot has a scale, whatever its range", () => {
   for (let high = 0.01; high < 1000; high *= 1.01) {
@@ -63,24 +57,6 @@ test("the picture between two steps has the angles and velocities of both", () =
   game.begin(0n, { ...DEFAULTS, dt: 1e30 });
   game.step(2);
   assert.ok(Math.abs(game.between(0.5).theta1) < 1e6);
-});
-
-test("the trail is where the tip was at equal times", () => {
-  const tip = ({ theta1, theta2 }) =>
-    [Math.sin, (angle) => -Math.cos(angle)].map((f) => f(theta1) + f(theta1 + theta2));
-  for (const [dt, length] of [[0.2, 90], [0.01, 36], [1e-9, 1], [1e30, 90]]) {
-    const game = new Game(42n, { ...DEFAULTS, dt });
-    assert.equal(game.trail(1, 1.5, 90).length, 1);
-    while (game.steps < 60) game.step(game.numbers[2] > 0 ? 0 : 2);
-    const trail = game.trail(0.3, 1.5, 90);
-    assert.equal(trail.length, length);
-    if (dt !== 0.2) continue;
-    // 12 points are 0.2 s.
-    for (let i = 0; i < length; i += 12) {
-      const [[x, y], [x2, y2]] = [trail[i], tip(game.between(0.3, 60 - i / 12))];
-      assert.ok(Math.hypot(x - x2, y - y2) < 1e-6);
-    }
-  }
 });
 
 test("an invalid link is rejected with the reason", () => {

@@ -1,23 +1,19 @@
 // Tests the page in a browser, and compares its results with native ones.
 
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { inChromium } from "../../../bindings/npm/browser.mjs";
 import { Learner } from "../dist/acrobot-rs/policies.js";
-import { ACTIONS, bits, trace } from "./native.mjs";
+import { ACTIONS, trace } from "./native.mjs";
 import {
   downloaded, folder, linkedActions, onPage, open, paused, press, says, shownBits, shows, showsBits,
   stepped, steps, text,
 } from "./player.mjs";
 
-onPage("the page loads, plays a policy, and has a strict content security policy", async (page) => {
-  const policy = await page.getAttribute("meta[http-equiv]", "content");
-  assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
-  assert.match(policy, /default-src 'none'/);
+onPage("the page loads and plays a policy", {}, async (page) => {
   await stepped(page, 2);
   await shows(page, "#status", "Bang-bang plays. To take over, press ← or →.");
   const drawn = await page.evaluate(() => {
@@ -30,7 +26,7 @@ onPage("the page loads, plays a policy, and has a strict content security policy
   assert.deepEqual(colors.filter((color) => !drawn.includes(color)), []);
 });
 
-onPage("keys apply torque, and states are bit-identical to native", async (page) => {
+onPage("keys apply torque, and states are bit-identical to native", {}, async (page) => {
   await paused(page, 42);
   await press(page, ACTIONS);
   await showsBits(page, trace("42", ACTIONS).at(-1));
@@ -52,27 +48,7 @@ onPage("keys apply torque, and states are bit-identical to native", async (page)
   await showsBits(page, trace("42", actions).at(-1));
 });
 
-/** What the package of this address computes: a batch with noise and resets, and a snapshot. */
-async function results(address) {
-  const { Batch } = await import(address);
-  const params = { torqueNoise: 0.3, dynamics: "nips" };
-  const batch = new Batch({ count: 37, seed: 5, params, maxSteps: 150 });
-  let step;
-  for (let i = 0; i < 400; i++) {
-    step = batch.step(Array.from({ length: 37 }, (_, j) => (i * j) % 3));
-  }
-  const { observations, rewards, ended } = step;
-  const bytes = new Uint8Array(observations.slice().buffer);
-  return [...batch.snapshot(), ...bytes, ...rewards, ...ended];
-}
-
-onPage("a batch, with noise and resets, is bit-identical to one in Node", async (page) => {
-  const found = await page.evaluate(results, "/acrobot-rs/index.js");
-  assert.ok(found.length > 2000);
-  assert.deepEqual(found, await results("../dist/acrobot-rs/index.js"));
-});
-
-onPage("seeds give Gymnasium's initial states, and invalid seeds are rejected", async (page) => {
+onPage("seeds give Gymnasium's initial states, others are rejected", {}, async (page) => {
   const seed = "123456789012345678901234567890";
   await paused(page, seed);
   await page.fill("#seed", "-1");
@@ -85,10 +61,10 @@ onPage("seeds give Gymnasium's initial states, and invalid seeds are rejected", 
   await showsBits(page, trace("5", [])[0]);
 });
 
-onPage("reset, pause and next seed do what they say", async (page) => {
+onPage("reset, pause and next seed do what they say", {}, async (page) => {
   await paused(page, 42);
   const start = await shownBits(page);
-  await press(page, [2, 2, 2]);
+  await press(page, [2, 2]);
   const before = await shownBits(page);
   await page.waitForTimeout(500);
   await showsBits(page, before);
@@ -103,7 +79,7 @@ onPage("reset, pause and next seed do what they say", async (page) => {
   await shows(page, "#pause", "Pause");
 });
 
-onPage("after a policy's goal the next seed follows, and a key takes over", async (page) => {
+onPage("after a policy's goal the next seed follows, and a key takes over", {}, async (page) => {
   await page.selectOption("#pace", "4");
   // The goal depends on the angles only.
   await page.fill("#length2", "2");
@@ -117,7 +93,7 @@ onPage("after a policy's goal the next seed follows, and a key takes over", asyn
   assert.equal(await page.inputValue("#policy"), "keys");
 });
 
-onPage("parameters act as in the crate, and invalid ones are rejected", async (page) => {
+onPage("parameters act as in the crate, and invalid ones are rejected", {}, async (page) => {
   await paused(page, 42);
   await page.fill("#dt", "0.05");
   await page.selectOption("#dynamics", "nips");
@@ -125,7 +101,7 @@ onPage("parameters act as in the crate, and invalid ones are rejected", async (p
   const state = await shownBits(page);
   assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
 
-  const shown = { "-0.1": "−0.1", abc: '"abc"', " ": "an empty text", "1e999": '"1e999"' };
+  const shown = { "-0.1": "−0.1", " ": "an empty text", "1e999": '"1e999"' };
   for (const [value, got] of Object.entries(shown)) {
     await page.fill("#dt", value);
     await shows(page, "#dt-reason", `dt must be finite and above 0 s, got ${got}`);
@@ -146,7 +122,7 @@ onPage("parameters act as in the crate, and invalid ones are rejected", async (p
   await showsBits(page, trace("42", ACTIONS).at(-1));
 });
 
-onPage("a tiny time step does not freeze the page", async (page) => {
+onPage("a tiny time step does not freeze the page", {}, async (page) => {
   await page.fill("#dt", "1e-9");
   await stepped(page, 500);
   assert.match(await text(page, "#status"), /^Out of time/);
@@ -161,9 +137,7 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     await press(page, ACTIONS);
     await page.click("#share");
     link = await page.inputValue("#link");
-    // Only in Chromium may a test read what was copied.
-    const copied = () => navigator.clipboard.readText();
-    if (!inChromium.skip) assert.equal(await page.evaluate(copied), link);
+    assert.equal(await page.evaluate(() => navigator.clipboard.readText()), link);
     assert.equal(await page.url(), link);
     await shows(page, "#link-field label", "Copied: a link with seed, physics and 21 actions");
     state = await shownBits(page);
@@ -191,25 +165,6 @@ test("a link replays a run, and an invalid link is rejected", async () => {
   });
 });
 
-onPage("the CSV file is bit-identical to the episode", async (page) => {
-  await paused(page, 42);
-  await press(page, ACTIONS);
-  const [names, ...lines] = (await downloaded(page, "#csv")).toString().trimEnd().split("\n");
-  // The column names of the crate's `Trajectory::write_csv`.
-  assert.equal(names.split(",").length, 13);
-  const source = readFileSync(new URL("../../../src/trajectory.rs", import.meta.url), "utf8");
-  assert.ok(source.replace(/\\\n\s*/g, "").includes(names));
-  const states = trace("42", ACTIONS);
-  lines.forEach((line, i) => {
-    const cells = line.split(",").map(Number);
-    assert.deepEqual(cells.slice(5, 7), [ACTIONS[i] - 1, -1]);
-    assert.equal(cells[0], i + 1);
-    assert.deepEqual(bits(cells.slice(1, 5)), states[i]);
-    assert.deepEqual(bits(cells.slice(7, 11)), states[i + 1]);
-  });
-  assert.equal(lines.length, ACTIONS.length);
-});
-
 /** Weights that the learner learns without a page. */
 function learnt(episodes, seed) {
   const learner = new Learner({ episodes, seed });
@@ -218,8 +173,7 @@ function learnt(episodes, seed) {
 }
 
 // The package's test compares the learner with the native one.
-// The package's test compares the learner with the native one.
-onPage("the worker trains the weights of the learner", async (page) => {
+onPage("the worker trains the weights of the learner", {}, async (page) => {
   const seed = "123456789012345678901";
   await page.fill("#episodes", "130");
   await page.fill("#training-seed", seed);
@@ -234,7 +188,7 @@ onPage("the worker trains the weights of the learner", async (page) => {
   assert.match(await text(page, "#training-status"), / episodes per minute · stopped$/);
 });
 
-onPage("loaded weights reach the goal, and invalid ones are rejected", async (page) => {
+onPage("loaded weights reach the goal, and invalid ones are rejected", {}, async (page) => {
   const path = join(folder, "weights.bin");
   const good = learnt(200, 42);
   writeFileSync(path, good);
@@ -271,14 +225,13 @@ for (const [missing, message, options] of [
   ["WebAssembly", /needs WebAssembly/, { prepare: () => delete globalThis.WebAssembly }],
   ["JavaScript", /needs JavaScript/, { javaScriptEnabled: false }],
 ]) {
-  const own = { ...inChromium, ...options, starts: false };
-  onPage(`without ${missing} the page says so`, own, async (page) => {
+  onPage(`without ${missing} the page says so`, { ...options, starts: false }, async (page) => {
     await page.locator("#notice", { hasText: message }).waitFor();
     assert.ok(await page.isHidden("#app"));
   });
 }
 
-const calm = { ...inChromium, reducedMotion: "reduce" };
+const calm = { reducedMotion: "reduce" };
 onPage("with reduced motion the page begins paused and moves step by step", calm, async (page) => {
   await shows(page, "#pause", "Play");
   assert.match(await text(page, "#between"), /Reduced motion/);
@@ -287,7 +240,7 @@ onPage("with reduced motion the page begins paused and moves step by step", calm
   await shows(page, "#step", "0");
 });
 
-onPage("a policy that cannot play says so, and the page goes on", async (page) => {
+onPage("a policy that cannot play says so, and the page goes on", {}, async (page) => {
   await page.fill("#mass1", "3e38");
   await page.selectOption("#policy", "energy_law");
   await says(page, "#status", /energy must be a finite number, got −Infinity$/);
@@ -298,7 +251,7 @@ onPage("a policy that cannot play says so, and the page goes on", async (page) =
   await stepped(page, 2);
 });
 
-onPage("a torque ends where its button loses the focus, and begins from a list", async (page) => {
+onPage("a torque ends where its button loses the focus", {}, async (page) => {
   const held = () => page.evaluate(() => document.querySelectorAll(".held").length);
   await page.focus("#left");
   await page.keyboard.down("Space");
@@ -314,19 +267,14 @@ onPage("a torque ends where its button loses the focus, and begins from a list",
   await page.keyboard.up("ArrowRight");
 });
 
-onPage("the fewest steps are those of who played, with these parameters", async (page) => {
+onPage("the fewest steps are those of who played, with these parameters", {}, async (page) => {
   await paused(page, 42);
   await page.selectOption("#policy", "bang_bang");
   await steps(page, 200);
-  const best = await text(page, "#best");
-  await shows(page, "#verdict", `Goal! ${best} steps`);
-  await shows(page, "#best-label", "Fewest steps");
+  await shows(page, "#verdict", `Goal! ${await text(page, "#best")} steps`);
   await page.selectOption("#policy", "keys");
   await shows(page, "#best", "–");
-  await shows(page, "#best-label", "Your fewest steps");
   await page.selectOption("#policy", "bang_bang");
   await page.fill("#gravity", "9");
   await shows(page, "#best", "–");
-  await page.click("#defaults");
-  await shows(page, "#best", best);
 });

@@ -80,15 +80,6 @@ pub struct Planner {
     knots: Vec<Knot<f32>>,
 }
 
-/// The knot in the words: its state, torque and gain.
-fn knot() -> Knot<f32> {
-    let [state, gain] = [numbers::<4>(0), numbers(5)];
-    let [torque] = numbers(4);
-    let mut knot = Knot::open(torque);
-    (knot.state, knot.gain) = (state.into(), gain);
-    knot
-}
-
 /// The default weights, with those in the mask.
 fn cost(params: &Params<f32>, mask: u32) -> Cost<f32> {
     let mut cost = Cost::new(params);
@@ -151,14 +142,6 @@ pub extern "C" fn read_knot(planner: &Planner, step: usize) {
     }
 }
 
-/// Sets a knot of the plan.
-#[unsafe(no_mangle)]
-pub extern "C" fn set_knot(planner: &mut Planner, step: usize) {
-    if let Some(place) = planner.knots.get_mut(step) {
-        *place = knot();
-    }
-}
-
 /// Plans with a seed of so many words. Writes the length of the plan, or returns 11 if it finds
 /// none.
 #[unsafe(no_mangle)]
@@ -174,17 +157,12 @@ pub extern "C" fn plan(planner: &mut Planner, words: usize, tries: u32) -> u32 {
     }
 }
 
-/// Improves the plan. Writes its cost.
-#[unsafe(no_mangle)]
-pub extern "C" fn improve(planner: &mut Planner, iterations: u32) -> u32 {
-    let cost = planner.planner.improve(state(), iterations, &mut planner.knots);
-    write(cost.map(|cost| [cost]))
-}
-
 /// The torque that follows the knot in the words, or that of the regulator after a plan.
 #[unsafe(no_mangle)]
 pub extern "C" fn follow(planner: &Planner, is_planned: bool) -> f32 {
-    let knot = knot();
+    let [a, b, c, d, torque, gain @ ..] = numbers::<9>(0);
+    let mut knot = Knot::open(torque);
+    (knot.state, knot.gain) = ([a, b, c, d].into(), gain);
     let plan = if is_planned { slice::from_ref(&knot) } else { &[] };
     planner.planner.follow(plan, 0, state())
 }
