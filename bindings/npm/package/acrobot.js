@@ -1,7 +1,8 @@
 // One acrobot: in the module, a batch of one.
 
-import { draw } from "./draw.js";
-import { ACTION, Environment, TASKS, isAction, load, readState, setState } from "./environment.js";
+import {
+  ACTION, Environment, TASKS, drawOne, isAction, load, readState, setState,
+} from "./environment.js";
 import { addressOf, call, isFinite32, writeSeed } from "./kept.js";
 import { integers, invalid, invalidSingle, numbers, wasm } from "./wasm.js";
 
@@ -19,10 +20,6 @@ function results(flags) {
 }
 
 export class Acrobot extends Environment {
-  /** The action or the torque of the last step, for its picture. */
-  #action = 1;
-  #torque;
-
   constructor(options = {}) {
     super("acrobot", options, { count: 1, autoreset: "Disabled", ownParams: true });
   }
@@ -35,23 +32,17 @@ export class Acrobot extends Environment {
 
   reset(seed) {
     call(this, "reset", writeSeed(seed));
-    [this.#action, this.#torque] = [1];
     return observation();
   }
 
   step(action) {
     if (!isAction(action)) throw invalid(`action ${ACTION}`, action);
-    const flags = wasm().step_action(addressOf(this), action);
-    this.#action = action;
-    this.#torque = undefined;
-    return results(flags);
+    return results(wasm().step_action(addressOf(this), action));
   }
 
   stepTorque(torque) {
     if (!isFinite32(torque)) throw invalidSingle("torque must be a finite number of N m", torque);
-    const flags = wasm().step_torque(addressOf(this), torque);
-    this.#torque = torque;
-    return results(flags);
+    return results(wasm().step_torque(addressOf(this), torque));
   }
 
   sample(seed) {
@@ -83,7 +74,7 @@ export class Acrobot extends Environment {
 
   get elapsedSteps() {
     call(this, "read_one", 0);
-    return integers()[6];
+    return integers()[7];
   }
 
   get maxSteps() {
@@ -97,8 +88,6 @@ export class Acrobot extends Environment {
   }
 
   draw(context, options) {
-    const { params, state } = this;
-    const torque = this.#torque ?? params.torques[this.#action];
-    draw(context, state, params, torque, options);
+    drawOne(this, 0, context, options);
   }
 }

@@ -1,9 +1,8 @@
 // Many acrobots.
 
-import { draw } from "./draw.js";
 import {
-  ACTION, AUTORESETS, Environment, TASKS, changeParams, isAction, load, readParams, readState,
-  setState,
+  ACTION, AUTORESETS, Environment, TASKS, changeParams, drawOne, isAction, load, readParams,
+  readState, setState,
 } from "./environment.js";
 import { addressOf, call, elements, isFinite32, writeSeed } from "./kept.js";
 import { integers, invalid, numbers, wasm } from "./wasm.js";
@@ -189,7 +188,7 @@ export class Batch extends Environment {
   elapsedStepsOf(index) {
     this.#checkIndex(index);
     call(this, "read_one", index);
-    return integers()[6];
+    return integers()[7];
   }
 
   paramsOf(index) {
@@ -203,6 +202,7 @@ export class Batch extends Environment {
   }
 
   draw(context, index, options) {
-    draw(context, this.stateOf(index), this.paramsOf(index), 0, options);
+    this.#checkIndex(index);
+    drawOne(this, index, context, options);
   }
 }

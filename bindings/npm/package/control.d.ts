@@ -5,8 +5,8 @@ export type Matrix = ArrayLike<ArrayLike<number>>;
 
 export interface Regulator {
   /**
-   * K in u = −K x, N m per rad and per rad/s: x is the deviation from the state, [θ1, θ2, θ̇1, θ̇2],
-   * and u that from the torque.
+   * K in u = −K x, N m per rad and per rad/s: x is the deviation from the state,
+   * [θ1, θ2, θ̇1, θ̇2], and u that from the torque.
    */
   gain: Float32Array;
   /** P by rows: xᵀ P x is the cost of all steps from x on. */

@@ -1,5 +1,6 @@
 // What acrobots and batches share.
 
+import { draw } from "./draw.js";
 import {
   DYNAMICS, Kept, STATE, accept, allocated, call, checkedState, elements, indexOf, isNumber,
   parameters, readSlots, writeSeed, writeSlots,
@@ -90,10 +91,17 @@ function readDraw(name, draw) {
   return [index, ...elements(name, array, DRAWS[kind], isNumber, "must be a number")];
 }
 
-/** The state of acrobot `index`. Its energy, its tip's height and its steps are in the words. */
+/** The state of acrobot `index`. The words have more, as acrobot.js reads it. */
 export function readState(kept, index) {
   call(kept, "read_one", index);
   return Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
+}
+
+/** Draws acrobot `index` with the torque of its last step. */
+export function drawOne(kept, index, context, options) {
+  const params = readParams(kept, index);
+  const state = readState(kept, index);
+  draw(context, state, params, numbers()[6], options);
 }
 
 export function setState(kept, state, index) {

@@ -188,6 +188,9 @@ pub extern "C" fn reset(many: &mut Many, words: usize) {
     }
     // Here and below the lengths are equal, so that this cannot fail.
     let _ = with_task!(&mut many.batch, batch => batch.reset_masked(&many.mask, options));
+    for (torque, reset) in many.torques.iter_mut().zip(&many.mask) {
+        *torque = if *reset { 0.0 } else { *torque };
+    }
     many.note_drawn_torques();
     observe(many);
 }
@@ -328,20 +331,21 @@ pub extern "C" fn step_action(many: &mut Many, action: usize) -> u32 {
     step_torque(many, torque.copied().unwrap_or_default())
 }
 
-/// Writes the state of an acrobot, its energy, its tip's height and its steps.
+/// Writes the state of an acrobot, its energy, its tip's height, the torque of its last step, and
+/// its steps.
 #[unsafe(no_mangle)]
 pub extern "C" fn read_one(many: &Many, index: usize) {
     let read = with_task!(&many.batch, batch => {
         let params = batch.params_of(index);
         params.zip(batch.state_of(index)).zip(batch.elapsed_steps_of(index))
     });
-    if let Some(((params, state), elapsed_steps)) = read
+    if let (Some(((params, state), elapsed_steps)), Some(torque)) = (read, many.torques.get(index))
         && let Ok(pendulum) = Pendulum::<Damped<Fast>>::new(params, state)
     {
         let [a, b, c, d] = state.into();
-        let numbers = [a, b, c, d, pendulum.energy(), pendulum.tip_height()];
-        let [a, b, c, d, e, f] = numbers.map(f32::to_bits);
-        memory::set(&[a, b, c, d, e, f, elapsed_steps]);
+        let numbers = [a, b, c, d, pendulum.energy(), pendulum.tip_height(), *torque];
+        let [a, b, c, d, e, f, g] = numbers.map(f32::to_bits);
+        memory::set(&[a, b, c, d, e, f, g, elapsed_steps]);
     }
 }
 

@@ -125,18 +125,6 @@ test("resets draw as NumPy does, after the initial state, alone and in a batch",
   assert.equal(batch.paramsOf(1).mass2, 3);
 });
 
-test("draws and parameters are checked together, and a restored acrobot draws nothing", () => {
-  const acrobot = new Acrobot({ seed: 1, draws: { inertia1: [0, 1] } });
-  const message = /^inertia1 must be above 0 if the centre of mass is on the joint, .*, got 0$/;
-  assert.throws(() => acrobot.setParams({ centerOfMass1: 0 }), { message });
-  assert.equal(acrobot.params.centerOfMass1, 0.5);
-  const { inertia1 } = acrobot.params;
-  assert.notEqual(inertia1, 1);
-  const restored = Acrobot.restore(acrobot.snapshot());
-  restored.reset();
-  assert.equal(restored.params.inertia1, inertia1);
-});
-
 test("acrobots of a batch can have other states", () => {
   const [batch, others] = [new Batch({ ...OPTIONS, count: COUNT }), alone(OPTIONS)];
   const states = Array.from(batch.states);

@@ -58,11 +58,7 @@ test("a cost's weights change the plan", () => {
 test("without a plan, the torque pumps energy and then holds", () => {
   const planner = new Planner(PARAMS, 7);
   const acrobot = new Acrobot({ seed: 42, params: PARAMS });
-  for (let i = 0; i < 6000; i++) {
-    const torque = planner.decide(acrobot.state);
-    assert.ok(Math.abs(torque) <= 7);
-    acrobot.stepTorque(torque);
-  }
+  for (let i = 0; i < 6000; i++) acrobot.stepTorque(planner.decide(acrobot.state));
   assert.ok(acrobot.tipHeight > 1.999);
   assert.equal(planner.plan(HANGING, { steps: 10, tries: 3 }), null);
 });
@@ -104,14 +100,12 @@ test("invalid arguments are rejected with Rust's messages", () => {
       "the state must be in equilibrium, with velocities of 0 and accelerations of at most 0.01 " +
       "rad/s²", ["0.5", hold(EYE, 1, state(0, 0, 0.5))]],
     ["RangeError", "the largest torque must be finite and above 0 N m", ["-0.3", make(-0.3)]],
-    ["RangeError", "height must be a finite number of m", ["NaN", make(1, { height: NaN })]],
     ["TypeError", "steps must be an integer from 1 to 2^32 - 1",
       ["undefined", () => planner.plan(HANGING, {})]],
     ["RangeError", "steps must fit into WebAssembly's memory of at most 4 GiB",
       ["4294967295 more", () => planner.plan(HANGING, { steps: 2 ** 32 - 1 })]],
     ["RangeError", "theta1 must be a finite number of rad",
-      ["NaN", () => planner.plan(state(NaN), { steps: 10 })],
-      ["Infinity", () => planner.decide(state(Infinity))]],
+      ["NaN", () => planner.plan(state(NaN), { steps: 10 })]],
     ["TypeError", "plan must be one that a planner returns",
       ["null", () => planner.follow(null, 0, HANGING)]],
     ["TypeError", "plan[0][5] must be a finite number",

@@ -93,7 +93,7 @@ test("the modules import nothing, and those of acrobots and of control cannot pa
 });
 
 test("the programs of the documentation run in Node.js and print what they say", () => {
-  assert.equal(PROGRAMS.length, 9);
+  assert.equal(PROGRAMS.length, 8);
   PROGRAMS.forEach((program, i) => {
     write(`program${i}.mjs`, program);
     assert.equal(run("node", [`program${i}.mjs`]).trim(), printed(program));
@@ -150,7 +150,7 @@ async function results(address) {
   const params = { torqueNoise: 0.3, dynamics: "nips" };
   const batch = new Batch({ count: 37, seed: 5, params, maxSteps: 150 });
   for (let i = 0; i < 400; i++) batch.step(Array.from({ length: 37 }, (_, j) => (i * j) % 3));
-  return [...batch.snapshot(), ...batch.observations];
+  return [...batch.snapshot(), ...new Uint8Array(batch.observations.slice().buffer)];
 }
 
 test("a batch, with noise and resets, is bit-identical in a browser and in Node", async () => {
@@ -175,14 +175,11 @@ test("another realm, with few globals and without compilation, takes a compiled 
   setModule(modules[0]);
   policies.setModule(modules[1]);
 
+  // Options and bytes of this realm.
   const acrobot = new Acrobot({ seed: 42 });
-  while (!acrobot.step(policies.bangBang(acrobot)).terminated);
-  assert.equal(acrobot.elapsedSteps, 94);
-  // Bytes and objects of this realm.
-  assert.equal(Acrobot.restore(Buffer.from(acrobot.snapshot())).elapsedSteps, 94);
-  acrobot.setParams({ dt: 0.1 });
-  const policy = readFileSync(join(root, "crates/policy/policy.bin"));
-  assert.ok(new policies.Perceptron(policy).act(acrobot) < 3);
+  const policy = new policies.Perceptron(readFileSync(join(root, "crates/policy/policy.bin")));
+  acrobot.step(policy.act(acrobot));
+  assert.equal(Acrobot.restore(Buffer.from(acrobot.snapshot())).elapsedSteps, 1);
   acrobot.free();
 });
 
@@ -193,10 +190,8 @@ async function moves(page) {
   await page.waitForFunction(hasMoved, first, { timeout: 5000 });
 }
 
-test("the page of the documentation draws episodes without a bundler", async () => {
-  const [html] = blocks("docs/wasm.md", "html");
-  await open(html, moves);
-});
+test("the page of the documentation draws episodes without a bundler", () =>
+  open(blocks("docs/wasm.md", "html")[0], moves));
 
 test("a picture is Gymnasium's", async () => {
   cpSync(join(root, "tests/data/frames.png"), join(folder, "frames.png"));

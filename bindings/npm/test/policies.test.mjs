@@ -53,7 +53,8 @@ test("invalid weights and other arguments are rejected", () => {
   const good = learner.save();
   const act = (state) => () => learner.act({ state });
   const rows = [
-    ["RangeError", "weights must have 49172 bytes", ["1000", () => learner.load(good.slice(0, 1000))]],
+    ["RangeError", "weights must have 49172 bytes",
+      ["1000", () => learner.load(good.slice(0, 1000))]],
     ["RangeError", "weights must have at most 524288 bytes",
       ["1000000", () => learner.load(new Uint8Array(1e6))]],
     ["TypeError", "weights must be a Uint8Array",

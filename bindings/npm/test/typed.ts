@@ -24,7 +24,7 @@ batch.setDraws({ torques: ["fixed", "fixed", { normal: [1, 0.1, 0.5, 1.5] }] });
 const mode: "NextStep" | "SameStep" | "Disabled" = batch.settings.autoreset;
 
 const learner = new Learner({ episodes: 100, seed: 42n });
-const actions: Action[] = [energyLaw(acrobot), learner.act(acrobot)];
+const actions: Action[] = [energyLaw(acrobot), learner.act(acrobot), acrobot.sample()];
 
 using planner = new Planner(params, 2, { torqueChange: 1, angles: [0.1, 0] });
 const plan: Plan | null = planner.plan(state, { steps: 500, seed: 7n });

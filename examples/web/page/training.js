@@ -64,7 +64,6 @@ export function trainingPanel(learner, { ready, drive }) {
     const returns = [];
     let sum = 0;
     means = [];
-    const began = performance.now();
     worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
     worker.onerror = ({ message }) => stop(`the training failed: ${message}`);
     worker.onmessage = ({ data }) => {
@@ -75,7 +74,6 @@ export function trainingPanel(learner, { ready, drive }) {
       }
       take(data.weights);
       draw();
-      const rate = Math.round((returns.length / (performance.now() - began)) * 60_000);
       const mean = sum / Math.min(returns.length, WINDOW);
       const solved = means.findIndex((mean) => mean >= SOLVED);
       const text = [
@@ -83,7 +81,6 @@ export function trainingPanel(learner, { ready, drive }) {
         `mean return ${minus(mean.toFixed(1))}`,
         ...(means.length === 0 ? [`the curve begins after ${WINDOW} episodes`] : []),
         solved < 0 ? "not solved yet" : `solved at episode ${solved + WINDOW}`,
-        `${rate.toLocaleString("en")} episodes per minute`,
       ].join(" · ");
       $("training-status").textContent = text;
       if (returns.length === episodes) stop();

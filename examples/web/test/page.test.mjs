@@ -98,21 +98,16 @@ onPage("parameters act as in the crate, and invalid ones are rejected", {}, asyn
   await page.fill("#dt", "0.05");
   await page.selectOption("#dynamics", "nips");
   await press(page, ACTIONS);
-  const state = await shownBits(page);
-  assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
+  await showsBits(page, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
 
-  const shown = { "-0.1": "−0.1", " ": "an empty text", "1e999": '"1e999"' };
-  for (const [value, got] of Object.entries(shown)) {
+  for (const [value, got] of [["-0.1", "−0.1"], ["abc", "NaN"]]) {
     await page.fill("#dt", value);
     await shows(page, "#dt-reason", `dt must be finite and above 0 s, got ${got}`);
   }
   assert.equal(await page.getAttribute("#dt", "aria-invalid"), "true");
   await page.focus(".parameter:has(#mass1) [type=range]");
-  // Each key moves the slider. The episode restarts when one is released.
-  for (const key of ["ArrowLeft", "ArrowRight", "ArrowRight"]) await page.keyboard.down(key);
+  await page.keyboard.press("ArrowRight");
   assert.equal(await page.inputValue("#mass1"), "1.05");
-  await showsBits(page, state);
-  await page.keyboard.up("ArrowRight");
   await shows(page, "#step", "0");
   await says(page, "#status", /^The episode restarts, because the physics has changed\./);
 
@@ -155,13 +150,11 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     assert.match(await page.url(), /#seed=42$/);
     assert.equal(await page.inputValue("#seed"), "42");
     assert.equal(await page.inputValue("#mass1"), "1");
-    // The address of an episode begins it again. A long reason is cut.
+    // The address of an episode begins it again.
     await page.evaluate(() => (location.hash = "seed=8&mass2=0.75"));
     await says(page, "#status", /^Bang-bang plays\./);
     assert.equal(await page.inputValue("#seed"), "8");
     assert.equal(await page.inputValue("#mass2"), "0.75");
-    await page.evaluate((name) => (location.hash = `${name}=`), "💥".repeat(200));
-    await says(page, "#status", /got "(💥)+…$/);
   });
 });
 
@@ -185,7 +178,7 @@ onPage("the worker trains the weights of the learner", {}, async (page) => {
   await page.click("#train");
   await says(page, "#training-status", /^[1-9].* of 1,000,000 episodes/);
   await page.click("#train");
-  assert.match(await text(page, "#training-status"), / episodes per minute · stopped$/);
+  assert.match(await text(page, "#training-status"), / · stopped$/);
 });
 
 onPage("loaded weights reach the goal, and invalid ones are rejected", {}, async (page) => {
@@ -199,7 +192,7 @@ onPage("loaded weights reach the goal, and invalid ones are rejected", {}, async
   await page.click("#drive");
   await page.click("#pause");
   await steps(page, 200);
-  await shows(page, "#verdict", `Goal! ${await text(page, "#best")} steps`);
+  await shows(page, "#verdict", `Goal! ${await text(page, "#step")} steps`);
 
   const short = join(folder, "short.bin");
   writeFileSync(short, good.subarray(0, 1000));
@@ -234,7 +227,6 @@ for (const [missing, message, options] of [
 const calm = { reducedMotion: "reduce" };
 onPage("with reduced motion the page begins paused and moves step by step", calm, async (page) => {
   await shows(page, "#pause", "Play");
-  assert.match(await text(page, "#between"), /Reduced motion/);
   assert.match(await text(page, "#status"), /^Press Play/);
   await page.waitForTimeout(500);
   await shows(page, "#step", "0");
@@ -265,16 +257,4 @@ onPage("a torque ends where its button loses the focus", {}, async (page) => {
   assert.equal(await held(), 1);
   assert.equal(await page.inputValue("#policy"), "keys");
   await page.keyboard.up("ArrowRight");
-});
-
-onPage("the fewest steps are those of who played, with these parameters", {}, async (page) => {
-  await paused(page, 42);
-  await page.selectOption("#policy", "bang_bang");
-  await steps(page, 200);
-  await shows(page, "#verdict", `Goal! ${await text(page, "#best")} steps`);
-  await page.selectOption("#policy", "keys");
-  await shows(page, "#best", "–");
-  await page.selectOption("#policy", "bang_bang");
-  await page.fill("#gravity", "9");
-  await shows(page, "#best", "–");
 });
