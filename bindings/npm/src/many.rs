@@ -304,9 +304,13 @@ pub extern "C" fn step(many: &mut Many, given_torques: bool) -> bool {
         if batch.step_into(&many.torques, buffers).is_err() {
             return false;
         }
+        let lasts = batch.autoreset() == Autoreset::Disabled;
         let flags = many.terminated.iter().zip(&many.truncated);
         for (i, (ended, (terminated, truncated))) in many.ended.iter_mut().zip(flags).enumerate() {
-            *ended = *terminated || *truncated || batch.ended_of(i).unwrap_or_default();
+            *ended = terminated | truncated;
+            if lasts {
+                *ended |= batch.ended_of(i).unwrap_or_default();
+            }
         }
     });
     many.note_drawn_torques();

@@ -3,7 +3,7 @@
 import { Perceptron } from "./acrobot-rs/policies.js";
 import { attempt } from "./parameters.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
-import { parseNumber, parseSeed, quoted } from "./settings.js";
+import { parseNumber, parseSeed } from "./settings.js";
 
 /** Solved, as Gymnasium defines it: a mean return of −100 over 100 episodes. */
 const WINDOW = 100;
@@ -17,7 +17,7 @@ const $ = (id) => document.getElementById(id);
 function parseEpisodes(text) {
   const episodes = parseNumber(text);
   if (Number.isInteger(episodes) && episodes >= 1 && episodes <= EPISODES) return episodes;
-  throw new Error(`episodes must be an integer from 1 to ${EPISODES}, got ${quoted(text)}`);
+  throw new Error(`episodes must be an integer from 1 to ${EPISODES}, got ${JSON.stringify(text)}`);
 }
 
 /** Calls `ready` with each learnt policy, and `drive` when the user wants to watch it. */

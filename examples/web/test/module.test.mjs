@@ -62,7 +62,7 @@ test("the picture between two steps has the angles and velocities of both", () =
 test("an invalid link is rejected with the reason", () => {
   for (const [bad, message] of [
     ["#seed=4&actions=13", /^actions must be at most 500 of 0, 1 and 2, got "13"$/],
-    ["#seed=", /^seed must have from 1 to 600 decimal digits, got an empty text$/],
+    ["#seed=", /^seed must have from 1 to 600 decimal digits, got ""$/],
     ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
   ]) {
     assert.throws(() => decodeRun(bad), { message });
