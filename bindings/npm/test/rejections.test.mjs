@@ -111,7 +111,6 @@ test("other arguments are rejected with the value and the rule, and nothing chan
     ["TypeError", "mass1 must be a number", ["undefined", set({ mass1: undefined })]],
     ["RangeError", "gravity must be a finite number of m/s²",
       ["1e+39, which is Infinity in single precision", set({ gravity: 1e39 })]],
-    ["TypeError", 'dynamics must be "book" or "nips"', ['"Nips"', set({ dynamics: "Nips" })]],
     ["TypeError", `params must be among ${names.join(", ")}`, ["mass", set({ mass: 1 })]],
     ["TypeError", "theta2 must be a number", ["undefined", () => (acrobot.state = { theta1: 0 })]],
     ["RangeError", "maxSteps must be an integer from 1 to 2^32 - 1",
@@ -128,14 +127,12 @@ test("other arguments are rejected with the value and the rule, and nothing chan
     ["RangeError", "torques[1] must be a finite number of N m",
       ["NaN", () => batch.stepTorque(Float32Array.of(0, NaN, 1))],
       ["1e+39, which is Infinity in single precision", () => batch.stepTorque([0, 1e39, 1])]],
-    ["RangeError", "states[6] must be a finite number of rad or rad/s",
-      ["Infinity", () => batch.setStates([0, 0, 0, 0, 0, 0, Infinity, 0, 0, 0, 0, 0])]],
     ["RangeError", "mask[1] must be true, false, 1 or 0",
       ["2", () => batch.resetMasked([1, 2, 1])]],
     ["RangeError", "index must be an integer from 0 to 2",
       ["3", () => batch.setStateOf(3, {})], ["-1", () => batch.setParamsOf(-1, {})]],
     ["TypeError", "index must be an integer from 0 to 2",
-      ['"0"', () => batch.stateOf("0")], ["undefined", () => batch.draw({ arc() {} })]],
+      ["undefined", () => batch.draw({ arc() {} })]],
     ["RangeError", "ownParams must be true for parameters of each acrobot",
       ["false", () => batch.setParamsOf(0, { mass1: 2 })]],
     ["TypeError", "ownParams must be true or false", ["1", many({ count: 1, ownParams: 1 })]],
@@ -143,8 +140,6 @@ test("other arguments are rejected with the value and the rule, and nothing chan
     ["TypeError", "count must be an integer from 1 to 2^32 - 1", ["undefined", many({})]],
     ["RangeError", "acrobots must fit into WebAssembly's memory of at most 4 GiB",
       ["4294967295 more", many({ count: 2 ** 32 - 1 })]],
-    ["TypeError", 'autoreset must be "NextStep" or "SameStep" or "Disabled"',
-      ['"nextStep"', many({ count: 1, autoreset: "nextStep" })]],
   ];
   assertRejected(rows, () => assert.deepEqual(snapshots(), before));
   // A change of all acrobots that one of them rejects changes none.
