@@ -120,7 +120,6 @@ pub mod render;
 mod snapshot;
 pub mod task;
 mod time_limit;
-pub mod trajectory;
 
 pub use acrobot::{Acrobot, REWARD_THRESHOLD, Step};
 pub use action::Action;

@@ -6,7 +6,7 @@ use core::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::batch::VecBatch;
 use acrobot::control::{difference, regulator};
-use acrobot::env::{AcrobotEnv, Env, RenderMode};
+use acrobot::env::Env;
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::saturate;
 use acrobot::rand_core::Rng;
@@ -82,8 +82,7 @@ fn own_tasks_run_in_batches_with_equal_bits() {
 
 #[test]
 fn own_tasks_are_environments() {
-    let env = AcrobotEnv::new(Acrobot::<Fast, Reach>::new(0), RenderMode::None);
-    let space = env.observation_space();
+    let space = Acrobot::<Fast, Reach>::new(0).observation_space();
     assert_eq!(space.high(), [4.0, 4.0, 20.0, f32::MAX, f32::MAX]);
     assert!(space.contains(&space.sample(&mut Pcg64::new(0))));
 }
