@@ -10,7 +10,6 @@ use embedded_graphics_core::geometry::{OriginDimensions, Point, Size};
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
 use super::{Figure, Theme};
-use crate::error::Error;
 
 /// A picture of RGB bytes: Gymnasium's `rgb_array`, and an embedded-graphics target.
 ///
@@ -48,25 +47,14 @@ impl Frame {
         frame
     }
 
-    /// A black frame of this size in pixels.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] for a frame that does not fit into memory.
-    pub fn new(width: u32, height: u32) -> Result<Self, Error> {
-        let pixels = (width as usize).saturating_mul(height as usize);
-        let len = pixels.saturating_mul(3);
+    /// A black frame of this size in pixels. `None` if it does not fit into memory.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Option<Self> {
+        let len = (width as usize).checked_mul(height as usize)?.checked_mul(3)?;
         let mut bytes = Vec::new();
-        if bytes.try_reserve_exact(len).is_err() {
-            return Err(Error::OutOfRange {
-                name: "width × height",
-                value: f64::from(width) * f64::from(height),
-                unit: "pixels",
-                rule: "small enough for the memory, in",
-            });
-        }
+        bytes.try_reserve_exact(len).ok()?;
         bytes.resize(len, 0);
-        Ok(Self { width, height, bytes })
+        Some(Self { width, height, bytes })
     }
 
     /// As [`new`](Self::new), for a size that is known to be small.
