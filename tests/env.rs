@@ -77,5 +77,8 @@ fn spaces_are_gymnasiums_and_know_their_elements() {
     acrobot.set_params(slower).unwrap();
     assert!(acrobot.observation_space().high().ends_with(&[1.0, 0.1]), "0.1 after a reset");
     assert!(!BoxSpace::new(vec![0.0], vec![1.0]).unwrap().contains(&[0.5, 0.5]));
-    assert!(BoxSpace::new(vec![0.0], vec![1.0, 2.0]).is_none());
+    assert!(space.contains(&space.sample(&mut Pcg64::new(0))));
+    for (low, high) in [(0.0, vec![1.0, 2.0]), (1.0, vec![0.0]), (f32::NEG_INFINITY, vec![0.0])] {
+        assert!(BoxSpace::new(vec![low], high).is_none());
+    }
 }
