@@ -63,13 +63,7 @@ use work::Work;
 /// child, under a [`TimeLimit`](crate::TimeLimit), whatever `N` and the [SIMD
 /// instructions](SimdLevel).
 ///
-/// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32:
-///
-/// ```compile_fail,E0080
-/// # use acrobot::{Fast, batch::{Batch, Block}, numpy::Pcg64, task::Gymnasium};
-/// let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 33]);
-/// let batch = Batch::<Fast, _, Gymnasium, 33>::new(42, memory);
-/// ```
+/// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32, or the program does not compile.
 ///
 /// # Snapshots
 ///
@@ -299,7 +293,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         self.settings.max_steps
     }
 
-    /// Sets the number of steps after which episodes are truncated.
+    /// Sets [`max_steps`](Self::max_steps).
     pub fn set_max_steps(&mut self, max_steps: NonZeroU32) {
         self.settings.max_steps = max_steps;
     }

@@ -71,7 +71,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         member.state.validate()?;
         self.block_of(index)?;
         match &self.settings.parameters {
-            Parameters::Shared(model) if model.params.same(&member.params) => {}
+            Parameters::Shared(model) if model.params == member.params => {}
             _ => self.set_params_of(index, member.params)?,
         }
         let SlicesMut { blocks, generators, lane_params, draws } = self.storage.slices_mut();
