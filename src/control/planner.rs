@@ -21,7 +21,7 @@ use super::matrix::{dot, identity, transpose};
 use super::passes::Machine;
 use super::plan::{Knot, NoPlan};
 use super::recovery::{Recovery, is_below, is_near};
-use super::tries;
+use super::tries::{self, Try};
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::sealed::Sealed as _;
@@ -213,8 +213,8 @@ impl<A: Arithmetic> Planner<A> {
     ) -> (A::Scalar, State<A::Scalar>) {
         let (mut len, mut result) = (Some(plan.len()), (A::Scalar::ZERO, start));
         tries::improve::<A, A::Scalar>(
-            self.machine(),
-            SimdLevel::Baseline,
+            self.machine(SimdLevel::Baseline),
+            &mut [Try::new()],
             start,
             iterations,
             plan,
@@ -227,8 +227,9 @@ impl<A: Arithmetic> Planner<A> {
         result
     }
 
-    fn machine(&self) -> Machine<'_, A> {
-        Machine { model: self.model.model(), recovery: &self.recovery, weights: &self.weights }
+    fn machine(&self, level: SimdLevel) -> Machine<'_, A> {
+        let Self { model, recovery, weights, .. } = self;
+        Machine { model: model.model(), recovery, weights, level }
     }
 
     /// Whether a plan ends where the regulator succeeds, and no velocity reaches its bound.
