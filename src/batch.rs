@@ -53,7 +53,7 @@ use crate::physics::{State, default_model, model};
 use crate::task::{Gymnasium, Of, ResetBounds, Task};
 use buffers::{check_length, take_mut};
 use lane_params::Own;
-use settings::{Parameters, Settings};
+use settings::Settings;
 use storage::SlicesMut;
 use work::Work;
 
@@ -113,16 +113,16 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         check_length("blocks", blocks.len(), generators.len().div_ceil(N))?;
         const { default_model::<A, Of<T>>() };
         let model = model::<A>(T::PARAMS.cast());
-        let parameters = if lane_params.is_empty() {
-            Parameters::Shared(model)
+        let shared = if lane_params.is_empty() {
+            Some(model)
         } else {
             check_length("lane_params", lane_params.len(), blocks.len())?;
             lane_params.fill(LaneParams::shared(&model));
-            Parameters::Own
+            None
         };
         let mut batch = Self {
             settings: Settings {
-                parameters,
+                shared,
                 bounds: T::RESET_BOUNDS,
                 max_steps: T::MAX_STEPS,
                 autoreset: Autoreset::default(),

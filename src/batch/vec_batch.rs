@@ -8,7 +8,6 @@ use super::block::Block;
 use super::buffers::StepBuffers;
 use super::inputs::Input;
 use super::lane_params::LaneParams;
-use super::settings::Parameters;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
@@ -94,10 +93,10 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     ///
     /// [`Error::OutOfMemory`]. Then nothing changes.
     pub fn own_params(&mut self) -> Result<(), Error> {
-        if let Parameters::Shared(model) = &self.batch.settings.parameters {
+        if let Some(model) = &self.batch.settings.shared {
             let len = self.batch.len();
             self.batch.storage.2 = fill(LaneParams::shared(model), len.div_ceil(N), len)?;
-            self.batch.settings.parameters = Parameters::Own;
+            self.batch.settings.shared = None;
         }
         Ok(())
     }
