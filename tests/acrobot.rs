@@ -24,7 +24,7 @@ const _: () = {
     assert!(REWARD_THRESHOLD == -100.0);
     assert!(size_of::<Action>() == 1);
     assert!(size_of::<Fast>() == 0);
-    assert!(size_of::<SeedSequence>() == 32);
+    assert!(size_of::<SeedSequence>() == 48);
     is_send_sync_clone::<Acrobot<Fast>>();
     is_send_sync_clone::<Pendulum<Fast>>();
     is_send_sync_clone::<Acrobot<Host>>();

@@ -101,12 +101,20 @@ fn descendants_equal_numpys() {
     }
 }
 
-/// A batch takes the children that are next.
+/// Children never run out: a batch takes the next ones, even after 2⁶⁴.
 #[test]
-fn each_call_spawns_other_children() {
+fn there_is_always_a_next_child() {
     let mut seed = SeedSequence::new(42);
-    assert!(seed.spawn(3).eq([0, 1, 2].map(|i| seed.child(i))));
-    let next = seed.child(3);
+    let mut all = seed.spawn(u64::MAX);
+    assert_eq!(all.next(), Some(seed.child(0)));
+    let last = seed.spawn(1).next().unwrap();
+    assert_eq!(last, seed.child(u64::MAX));
+    assert_eq!(seed.spawn(5).count(), 5);
+    let next = seed.clone().spawn(1).next().unwrap();
+    // np.random.SeedSequence(42, spawn_key=(2**64 + 5,)).generate_state(2, np.uint64)
+    let words = [0xc75e_27e1_5183_9fa7, 0x22de_3ff0_2e47_cbe8];
+    assert_eq!(next.generate_state(), words);
+
     let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 1]);
     let batch = Batch::<Fast, _>::new(seed, memory).unwrap();
     let alone = Acrobot::<Fast>::with_rng(next.into());

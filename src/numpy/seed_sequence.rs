@@ -9,7 +9,7 @@ use crate::error::Error;
 
 /// A hashed seed: NumPy's `SeedSequence` of any non-negative integer, and its children.
 ///
-/// It has 32 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the
+/// It has 48 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the
 /// same children by accident.
 ///
 /// ```
@@ -29,7 +29,7 @@ pub struct SeedSequence {
     /// The multiplier of the next `hash`, which changes it.
     hash_multiplier: u32,
     /// The number of children spawned.
-    spawned: u64,
+    spawned: u128,
 }
 
 const SHIFT: u32 = 16;
@@ -80,16 +80,20 @@ impl SeedSequence {
     }
 
     /// NumPy's `spawn(n)`: the next `n` children, each with an independent stream. A later call
-    /// returns other children, until there have been 2⁶⁴.
+    /// returns other children.
     pub fn spawn(&mut self, n: u64) -> impl Iterator<Item = Self> + use<> {
         let parent = self.clone();
-        self.spawned = parent.spawned.wrapping_add(n);
-        (0..n).map(move |i| parent.child(parent.spawned.wrapping_add(i)))
+        self.spawned = parent.spawned.saturating_add(n.into());
+        (0..n).map(move |i| parent.descend(parent.spawned.saturating_add(i.into())))
     }
 
     /// The child with this index, counted from 0 over all calls of [`spawn`](Self::spawn).
     #[must_use]
-    pub fn child(&self, mut index: u64) -> Self {
+    pub fn child(&self, index: u64) -> Self {
+        self.descend(index.into())
+    }
+
+    fn descend(&self, mut index: u128) -> Self {
         let mut child = Self { spawned: 0, ..self.clone() };
         loop {
             child.absorb(index as u32);
