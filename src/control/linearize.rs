@@ -17,19 +17,6 @@ pub struct LinearModel<S = f64> {
     pub b: [S; 4],
 }
 
-impl<S: Real> LinearModel<S> {
-    /// Rejects elements that are not finite.
-    pub(super) fn check(self) -> Result<Self, ControlError> {
-        check_finite("a", self.a.as_flattened())?;
-        check_finite("b", &self.b)?;
-        Ok(self)
-    }
-
-    pub(super) fn to_f64(self) -> LinearModel {
-        LinearModel { a: self.a.map(|row| row.map(S::to_f64)), b: self.b.map(S::to_f64) }
-    }
-}
-
 /// Linearizes the equations of motion about the pendulum's state and a torque, N m: A and B of
 /// ẋ = A x + B u, exact up to rounding.
 ///
@@ -60,13 +47,18 @@ pub fn linearize<A: Arithmetic>(
     let y = pendulum.state().into();
     let (_, [by_state @ .., by_torque]) =
         partials::<A>(pendulum.model(), y, pendulum.sin_cos(), torque);
-    let a = [
-        [zero, zero, one, zero],
-        [zero, zero, zero, one],
-        by_state.map(|[ddtheta1, _]| ddtheta1),
-        by_state.map(|[_, ddtheta2]| ddtheta2),
-    ];
-    LinearModel { a, b: [zero, zero, by_torque[0], by_torque[1]] }.check()
+    let model = LinearModel {
+        a: [
+            [zero, zero, one, zero],
+            [zero, zero, zero, one],
+            by_state.map(|[ddtheta1, _]| ddtheta1),
+            by_state.map(|[_, ddtheta2]| ddtheta2),
+        ],
+        b: [zero, zero, by_torque[0], by_torque[1]],
+    };
+    check_finite("a", model.a.as_flattened())?;
+    check_finite("b", &model.b)?;
+    Ok(model)
 }
 
 /// \[θ̈1, θ̈2\], and their derivatives by θ1, θ2, θ̇1, θ̇2 and the torque.

@@ -10,6 +10,7 @@ use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use super::deviation::difference;
 use super::error::ControlError;
+use super::linearize::LinearModel;
 use super::linearize_step::linearize_step;
 use super::lqr::{Lqr, lqr};
 use super::matrix::{dot, identity};
@@ -47,10 +48,14 @@ impl<S: Real> Recovery<S> {
     ) -> Result<Self, ControlError> {
         Range::AboveZero.check("the largest torque", limit.to_f64(), "N m")?;
         let machine = Pendulum::<A>::new(params, State::UPRIGHT)?;
-        let model = linearize_step(&machine, S::ZERO)?.to_f64();
+        let LinearModel { a, b } = linearize_step(&machine, S::ZERO)?;
+        let model = LinearModel { a: a.map(|row| row.map(S::to_f64)), b: b.map(S::to_f64) };
         // In f64, because the rounding of P to f32 can be larger than its smallest eigenvalue.
         let exact = lqr(&model, &identity(), 1.0)?;
-        let regulator = exact.round();
+        let regulator = Lqr {
+            gain: exact.gain.map(S::from_f64),
+            cost_to_go: exact.cost_to_go.map(|row| row.map(S::from_f64)),
+        };
         let factor = cholesky(exact.cost_to_go);
         let most = limit.to_f64() / largest(&factor, exact.gain);
         let safe = (most * SQRT_2).min(LINEAR / largest(&factor, [1.0, 0.0, 0.0, 0.0]));

@@ -49,8 +49,8 @@ pub(super) struct Try<S> {
 }
 
 /// Improves plans from a state, each by at most so many iterations, in lanes that begin with
-/// [`Try::new`]. `next` writes the next plan into a lane, and returns its length, or `None` if there
-/// is no other. `take` gets a plan that is done: how many plans began before it, its lane, its
+/// [`Try::new`]. `next` writes the next plan into a lane, and returns its length, or `None` without
+/// another one. `take` gets a plan that is done: how many plans began before it, its lane, its
 /// knots, its cost, and the state after it. It returns whether to go on. No cost is finite if the
 /// numbers overflow.
 #[inline(never)]
