@@ -212,7 +212,7 @@ impl<A: Arithmetic> Planner<A> {
         plan: &mut [Knot<A::Scalar>],
     ) -> (A::Scalar, State<A::Scalar>) {
         let (mut len, mut result) = (Some(plan.len()), (A::Scalar::ZERO, start));
-        tries::improve::<A, A::Scalar>(
+        tries::improve::<A, A::Scalar, 1>(
             self.machine(SimdLevel::Baseline),
             &mut [Try::new()],
             start,

@@ -54,9 +54,9 @@ pub(super) struct Try<S> {
 /// knots, its cost, and the state after it. It returns whether to go on. No cost is finite if the
 /// numbers overflow.
 #[inline(never)]
-pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
+pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>, const LANES: usize>(
     machine: Machine<'_, A>,
-    tries: &mut [Try<A::Scalar>],
+    tries: &mut [Try<A::Scalar>; LANES],
     start: State<A::Scalar>,
     iterations: u32,
     knots: &mut [Knot<V>],

@@ -61,7 +61,7 @@ impl<A: Arithmetic> Planner<A> {
         };
         let mut knots = vec![empty(); steps];
         let (machine, lanes) = (self.machine(self.level), &mut [Try::new(); LANES]);
-        tries::improve::<A, _>(machine, lanes, start, ITERATIONS, &mut knots, next, take);
+        tries::improve::<A, _, LANES>(machine, lanes, start, ITERATIONS, &mut knots, next, take);
         match found {
             Some(mut plan) => self.track(&mut plan).map(|()| plan).map_err(NoPlan::Invalid),
             None => Err(NoPlan::NotFound { tries }),
@@ -99,7 +99,7 @@ impl<A: Arithmetic> Planner<A> {
         };
         let mut knots = vec![empty(); longest];
         let (machine, lanes) = (self.machine(self.level), &mut [Try::new(); LANES]);
-        tries::improve::<A, _>(machine, lanes, start, iterations, &mut knots, next, take);
+        tries::improve::<A, _, LANES>(machine, lanes, start, iterations, &mut knots, next, take);
         let finish = |(cost, plan): (_, &mut Vec<_>)| self.finish(cost, plan);
         Ok(costs.into_iter().zip(plans).map(finish).collect())
     }
