@@ -26,13 +26,6 @@ pub enum Error {
         /// The rule, before the unit: `"finite and above 0"`.
         rule: &'static str,
     },
-    /// A joint has friction, and the arithmetic has none.
-    NoFriction {
-        /// `"friction.joint1"` or `"friction.joint2"`.
-        name: &'static str,
-        /// The coefficient given, N m s/rad.
-        value: f64,
-    },
     /// A batch has no memory for the parameters of each acrobot.
     SharedParams,
     /// A batch has no acrobots.
@@ -64,18 +57,11 @@ pub enum Error {
     /// A text that is not a seed.
     #[cfg(feature = "std")]
     MalformedSeed {
-        /// The first character that is not a decimal digit; `None` for an empty text.
+        /// The first character that is not a decimal digit or beyond the largest number of digits;
+        /// `None` for an empty text.
         found: Option<char>,
         /// Its position, counted from 1.
         position: usize,
-    },
-    /// The text of a seed has too many digits.
-    #[cfg(feature = "std")]
-    SeedTooLong {
-        /// The length of the text, bytes.
-        len: usize,
-        /// The largest number of digits.
-        limit: usize,
     },
 }
 
@@ -84,9 +70,7 @@ impl Error {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::OutOfRange { name, .. }
-            | Self::NoFriction { name, .. }
-            | Self::WrongLength { name, .. } => name,
+            Self::OutOfRange { name, .. } | Self::WrongLength { name, .. } => name,
             Self::UnknownAction(_) => "action",
             _ => "",
         }
@@ -103,7 +87,6 @@ impl Error {
     pub const fn message(&self) -> &'static str {
         match self {
             Self::OutOfRange { .. } => "a number is out of range",
-            Self::NoFriction { .. } => "the arithmetic has no friction",
             Self::SharedParams => "a batch must have memory for the parameters of each acrobot",
             Self::EmptyBatch => "a batch must have at least 1 acrobot",
             #[cfg(feature = "alloc")]
@@ -112,9 +95,7 @@ impl Error {
             Self::NoSuchIndex { .. } => "a batch has no acrobot with this index",
             Self::UnknownAction(_) => "an action must be 0, 1 or 2",
             #[cfg(feature = "std")]
-            Self::MalformedSeed { .. } => "a seed must be a decimal integer of at least 0",
-            #[cfg(feature = "std")]
-            Self::SeedTooLong { .. } => "a seed has too many digits",
+            Self::MalformedSeed { .. } => "a seed must be a number of 1 to 4300 decimal digits",
         }
     }
 }
@@ -129,10 +110,6 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
             Error::OutOfRange { value, unit, rule, .. } => {
                 write!(f, "{name} must be {rule} {unit}, got {value}")
             }
-            Error::NoFriction { value, .. } => write!(
-                f,
-                "{name} must be 0 unless the arithmetic is Damped, in N m s/rad, got {value}"
-            ),
             Error::WrongLength { len, expected, .. } => {
                 write!(f, "{name} must have {expected} elements, got {len}")
             }
@@ -149,15 +126,11 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
             ),
             #[cfg(feature = "std")]
             Error::MalformedSeed { found, position } => {
-                f.write_str("seed must be a decimal integer of at least 0, got ")?;
+                f.write_str("seed must be a number of 1 to 4300 decimal digits, got ")?;
                 match found {
                     Some(found) => write!(f, "{found:?} as character {position}"),
                     None => f.write_str("an empty text"),
                 }
-            }
-            #[cfg(feature = "std")]
-            Error::SeedTooLong { len, limit } => {
-                write!(f, "seed must have at most {limit} digits, got {len} bytes")
             }
         }
     }

@@ -92,7 +92,8 @@ pub(super) const fn check_friction<A: Arithmetic>(friction: [f64; 2]) -> Result<
         [0.0, joint2] => ("friction.joint2", joint2),
         [joint1, _] => ("friction.joint1", joint1),
     };
-    Err(Error::NoFriction { name, value })
+    let rule = "0 unless the arithmetic is Damped, in";
+    Err(Error::OutOfRange { name, value, unit: "N m s/rad", rule })
 }
 
 /// A torque less that of a joint's friction, N m.

@@ -100,13 +100,6 @@ impl<S: Real> Params<S> {
     pub fn cast<T: Real>(&self) -> Params<T> {
         self.zip(self, |x, _| T::from_f64(x.to_f64()))
     }
-
-    /// Whether all bits are the same. `==` takes −0 for 0.
-    pub(crate) fn same(&self, other: &Self) -> bool {
-        let [bits, other_bits] =
-            [self, other].map(|params| params.numbers().map(|(_, x)| x.to_f64().to_bits()));
-        self.dynamics == other.dynamics && bits == other_bits
-    }
 }
 
 /// The name, unit and range of each number.

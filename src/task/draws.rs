@@ -207,10 +207,3 @@ impl<S: Modeled> Draws<S> {
         check_params::<A>(&high)
     }
 }
-
-impl<S: Real> Default for Draws<S> {
-    /// [`Draws::NONE`].
-    fn default() -> Self {
-        Self::NONE
-    }
-}

@@ -92,7 +92,7 @@ export function accept(kind, given) {
   const [value] = numbers();
   const name = camelCase(text(1));
   const friction = '0 in the task "acrobot", in N m s/rad';
-  const rule = kind === 2 ? friction : `${text(3)} ${text(5)}`;
+  const rule = text(3).startsWith("0 unless") ? friction : `${text(3)} ${text(5)}`;
   // What the caller gave, before it was rounded.
   const all = [given[name], given[`${name}[0]`], given[`${name}[1]`]].flat();
   const own = all.find((number) => Object.is(Math.fround(number), value));

@@ -115,11 +115,8 @@ impl Planner {
             margin: margin.unwrap_or(tenth),
             arrival,
         };
-        let planner = match clamps {
-            true => control::Planner::for_simulation(params, max_torque, cost),
-            false => control::Planner::with_cost(params, max_torque, cost),
-        };
-        planner.map(Self).map_err(rejected)
+        let planner = control::Planner::with_cost(params, max_torque, cost).map_err(rejected)?;
+        Ok(Self(if clamps { planner.for_simulation() } else { planner }))
     }
 
     fn plan(

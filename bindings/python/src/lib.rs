@@ -10,10 +10,10 @@ mod task;
 use std::fmt::{self, Display, Formatter};
 
 use acrobot::arithmetic::{Damped, Host, Real};
-use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
-use acrobot::physics::Dynamics;
+use acrobot::physics::{Dynamics, Pendulum};
+use acrobot::render::{Figure, Frame};
 use acrobot::task::{Balance, Gymnasium, ResetBounds, Swingup, Task};
-use acrobot::{Acrobot, Error, Params, State};
+use acrobot::{Error, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
@@ -205,23 +205,17 @@ fn render<'py>(
     state: State,
     mode: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let mode = match mode {
-        "rgb_array" => RenderMode::RgbArray,
-        _ => RenderMode::Ansi,
-    };
-    let mut env = AcrobotEnv::new(Acrobot::<Damped<Host>>::new(0), mode);
-    env.set_params(params).map_err(rejected)?;
-    env.set_state(state).map_err(rejected)?;
-    match env.render().map_err(rejected)? {
-        Rendering::Frame(frame) => {
-            let shape = [frame.height() as usize, frame.width() as usize, 3];
-            let array = PyArray1::from_slice(py, frame.bytes()).reshape(shape)?;
-            Ok(array.into_any())
-        }
-        Rendering::Text(text) => Ok(text.into_pyobject(py)?.into_any()),
-        // The other modes return no picture, and were rejected above.
-        _ => Ok(py.None().into_bound(py)),
+    let figure = Figure::of(&Pendulum::<Damped<Host>>::new(params, state).map_err(rejected)?);
+    if mode == "rgb_array" {
+        let frame = Frame::of(&figure);
+        let shape = [frame.height() as usize, frame.width() as usize, 3];
+        return Ok(PyArray1::from_slice(py, frame.bytes()).reshape(shape)?.into_any());
     }
+    let [theta1, theta2, dtheta1, dtheta2] = <[f64; 4]>::from(state);
+    let angles = format!("θ1 {theta1:+.2}  θ2 {theta2:+.2} rad");
+    let velocities = format!("θ̇1 {dtheta1:+.2}  θ̇2 {dtheta2:+.2} rad/s");
+    let text = format!("{}\n{angles}  {velocities}\n", figure.braille());
+    Ok(text.into_pyobject(py)?.into_any())
 }
 
 /// Changes when a snapshot of another layout would be read.

@@ -2,8 +2,6 @@
 //! not exist. `cargo build --release --bin no_panic --features no_panic` is the whole test; nothing
 //! runs. CI builds it with the oldest and the newest Rust, at opt-level 3, 2, "s" and "z".
 //!
-//! `Trajectory`'s `write_csv` and `rows` are not called: core's formatting of floats can panic.
-
 #![no_std]
 #![no_main]
 
@@ -21,7 +19,6 @@ use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
 use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup, Task};
-use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use bits::training;
 use cortex_m_rt::entry;
@@ -136,7 +133,6 @@ fn environment<A: Arithmetic, T: Task>() {
     let mut seeds = SeedSequence::new(black_box(42));
     for seed in seeds.spawn(black_box(2)) {
         let mut acrobot = TimeLimit::of(Acrobot::<A, T>::with_rng(seed.clone().into()));
-        let mut trajectory = Trajectory::<A::Scalar, 8>::new();
         let inner = acrobot.inner_mut();
         let _ = black_box((
             inner.set_params(params()),
@@ -156,8 +152,7 @@ fn environment<A: Arithmetic, T: Task>() {
         for _ in 0..black_box(10) {
             let action = Action::sample(acrobot.inner_mut().rng_mut());
             let _ = black_box((
-                trajectory.step(&mut acrobot, action),
-                trajectory.step_torque(&mut acrobot, number()),
+                acrobot.step(action),
                 Action::try_from(black_box(3)),
                 acrobot.step_torque(number()),
             ));
@@ -167,9 +162,6 @@ fn environment<A: Arithmetic, T: Task>() {
             let _ = figure.redraw(&shown, &mut display, &Theme::MONOCHROME);
             black_box(display.data());
             shown = figure;
-        }
-        for transition in trajectory.iter() {
-            black_box(transition);
         }
     }
 }
