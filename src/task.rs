@@ -21,7 +21,7 @@ use rand_core::Rng;
 
 pub use balance::Balance;
 pub use draws::{Draw, Draws};
-pub use gymnasium::Gymnasium;
+pub use gymnasium::{Gymnasium, GymnasiumV0};
 pub use observation::Observation;
 pub use reset_bounds::ResetBounds;
 pub use reset_options::ResetOptions;

@@ -5,7 +5,8 @@ use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Micro, Reference};
 use acrobot::control::ControlError;
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, Pendulum};
-use acrobot::task::ResetBounds;
+use acrobot::task::{GymnasiumV0, ResetBounds, Task};
+use acrobot::trajectory::{Trajectory, Transition};
 use acrobot::{
     Acrobot, Action, Error, Fast, Params, Portable, REWARD_THRESHOLD, ResetOptions, State, Step,
     TimeLimit,
@@ -25,10 +26,12 @@ const _: () = {
     assert!(size_of::<Action>() == 1);
     assert!(size_of::<Fast>() == 0);
     assert!(size_of::<SeedSequence>() == 48);
+    assert!(size_of::<Transition<f32>>() <= 44);
     is_send_sync_clone::<Acrobot<Fast>>();
     is_send_sync_clone::<Pendulum<Fast>>();
     is_send_sync_clone::<Acrobot<Host>>();
     is_send_sync_clone::<TimeLimit<Acrobot<Micro>>>();
+    is_send_sync_clone::<Trajectory<f32, 10>>();
     is_send_sync_clone::<Pcg64>();
     is_send_sync_clone::<Error>();
     is_send_sync_clone::<ControlError>();
@@ -58,20 +61,23 @@ fn a_tip_at_the_target_height_is_not_in_the_goal() {
 
 #[test]
 fn time_limits_truncate_whether_or_not_an_episode_terminates() {
-    let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(1));
-    assert!((1..500).all(|_| !acrobot.step(Action::Zero).truncated));
-    acrobot.set_state(State::UPRIGHT).unwrap();
-    let last = acrobot.step(Action::Zero);
-    assert!(last.terminated && last.truncated && last.done(), "both on the last step");
-    acrobot.set_state(State::HANGING).unwrap();
-    let beyond = acrobot.step(Action::Zero);
-    assert!(!beyond.terminated && beyond.truncated && beyond.done(), "as in Gymnasium");
-    acrobot.reset();
-    assert!(!acrobot.step(Action::Zero).done());
-    acrobot.set_max_steps(3.try_into().unwrap());
-    assert!(!acrobot.step(Action::Zero).done());
-    assert!(acrobot.step(Action::Zero).truncated, "the count goes on");
-    assert_eq!(acrobot.elapsed_steps(), 3);
+    fn check<T: Task>(mut acrobot: TimeLimit<Acrobot<Fast, T>>, limit: u32) {
+        assert!((1..limit).all(|_| !acrobot.step(Action::Zero).truncated));
+        acrobot.set_state(State::UPRIGHT).unwrap();
+        let last = acrobot.step(Action::Zero);
+        assert!(last.terminated && last.truncated && last.done(), "both on the last step");
+        acrobot.set_state(State::HANGING).unwrap();
+        let beyond = acrobot.step(Action::Zero);
+        assert!(!beyond.terminated && beyond.truncated && beyond.done(), "as in Gymnasium");
+        acrobot.reset();
+        assert!(!acrobot.step(Action::Zero).done());
+        acrobot.set_max_steps(3.try_into().unwrap());
+        assert!(!acrobot.step(Action::Zero).done());
+        assert!(acrobot.step(Action::Zero).truncated, "the count goes on");
+        assert_eq!(acrobot.elapsed_steps(), 3);
+    }
+    check(TimeLimit::of(Acrobot::<Fast>::new(1)), 500);
+    check(TimeLimit::of(Acrobot::<Fast, GymnasiumV0>::new(1)), 200);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use acrobot::arithmetic::{Damped, Host};
 use acrobot::env::{BoxSpace, Env};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::task::{ResetBounds, Swingup};
+use acrobot::task::{GymnasiumV0, ResetBounds, Swingup};
 use acrobot::{Acrobot, Action, Fast, Params, ResetOptions, TimeLimit};
 use common::{Digest, is_recorded_library, lines};
 
@@ -14,8 +14,11 @@ fn environments_play_gymnasiums_runs() {
     }
     let mut played = 0;
     for row in lines(include_str!("data/seeds.txt"), "play") {
-        let [seed, digest, episodes] = row.split(' ').collect::<Vec<_>>().try_into().unwrap();
-        let mut env: Box<dyn Env> = Box::new(TimeLimit::of(Acrobot::<Host>::new(0)));
+        let [id, seed, digest, episodes] = row.split(' ').collect::<Vec<_>>().try_into().unwrap();
+        let mut env: Box<dyn Env> = match id {
+            "Acrobot-v0" => Box::new(TimeLimit::of(Acrobot::<Host, GymnasiumV0>::new(0))),
+            _ => Box::new(TimeLimit::of(Acrobot::<Host>::new(0))),
+        };
         let sequence: SeedSequence = seed.parse().unwrap();
         let mut actions = Pcg64::from(sequence.clone());
         env.reset_with(ResetOptions { seed: Some(sequence), ..ResetOptions::default() });
@@ -33,11 +36,11 @@ fn environments_play_gymnasiums_runs() {
                 env.reset();
             }
         }
-        assert_eq!(format!("{:016x}", found.0), digest, "seed {seed}");
-        assert_eq!(ends.to_string(), episodes, "seed {seed}");
+        assert_eq!(format!("{:016x}", found.0), digest, "{id}, seed {seed}");
+        assert_eq!(ends.to_string(), episodes, "{id}, seed {seed}");
         played += 1;
     }
-    assert_eq!(played, 10);
+    assert_eq!(played, 20);
 }
 
 #[test]

@@ -1,5 +1,6 @@
-//! Gymnasium's task.
+//! Gymnasium's task, in two versions.
 
+use core::f32::consts::PI;
 use core::num::NonZeroU32;
 
 use super::{Seen, Task};
@@ -30,9 +31,7 @@ impl Task for Gymnasium {
 
     /// 1, 1, 1, 1, and the largest velocities, at least 0.1 rad/s for the initial states.
     fn observation_high(&self, params: &Params<f32>) -> [f32; 6] {
-        let initial = Self::RESET_BOUNDS.high() as f32;
-        let [dtheta1, dtheta2] =
-            [params.max_velocity1, params.max_velocity2].map(|limit| limit.max(initial));
+        let [dtheta1, dtheta2] = highest_velocities(params);
         [1.0, 1.0, 1.0, 1.0, dtheta1, dtheta2]
     }
 
@@ -55,6 +54,53 @@ impl Task for Gymnasium {
         ended: V::Mask,
     ) -> V::Single {
         V::Single::either(ended, 0.0, -1.0)
+    }
+}
+
+/// The largest velocities after a step or a reset with the default bounds, rad/s.
+fn highest_velocities(params: &Params<f32>) -> [f32; 2] {
+    let initial = Gymnasium::RESET_BOUNDS.high() as f32;
+    [params.max_velocity1, params.max_velocity2].map(|limit| limit.max(initial))
+}
+
+/// Gymnasium's `Acrobot-v0`: as [`Gymnasium`], with the state as the observation and 200 steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct GymnasiumV0;
+
+impl Task for GymnasiumV0 {
+    const NAME: &'static str = "gymnasium_v0";
+    const DEFAULT: Self = Self;
+    const MAX_STEPS: NonZeroU32 = NonZeroU32::new(200).unwrap();
+
+    /// \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s.
+    type Observation = [f32; 4];
+
+    #[inline(always)]
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 4] {
+        seen.state.into()
+    }
+
+    /// π, π, and the largest velocities of [`Gymnasium`].
+    fn observation_high(&self, params: &Params<f32>) -> [f32; 4] {
+        let [dtheta1, dtheta2] = highest_velocities(params);
+        [PI, PI, dtheta1, dtheta2]
+    }
+
+    #[inline(always)]
+    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
+        Gymnasium.ended::<A, V>(seen)
+    }
+
+    #[inline(always)]
+    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        seen: &Seen<V>,
+        params: &Params<V>,
+        torque: V,
+        ended: V::Mask,
+    ) -> V::Single {
+        Gymnasium.reward::<A, V>(seen, params, torque, ended)
     }
 }
 

@@ -164,22 +164,24 @@ def write_seeds():
         samples = np.concatenate([space.sample() for _ in range(3)])
         lines.append(f"box {seed} {hexes(samples.view('<u4'), 8)}")
     lines.append(
-        "# play SEED: 1000 random steps, a reset at each end: a digest of every step's "
-        "observation (f32), reward and ends, and the number of episodes"
+        "# play ID SEED: 1000 random steps, a reset at each end: a digest of every step's "
+        "observation (f32; for v0\n# the state), reward and ends, and the number of episodes"
     )
-    for seed in range(10):
-        played = gymnasium.make("Acrobot-v1")
+    for version, seed in product([0, 1], range(10)):
+        # Gymnasium no longer has Acrobot-v0, which differed in its limit and its observation.
+        played = gymnasium.make("Acrobot-v1", max_episode_steps=[200, 500][version])
         played.reset(seed=seed)
         played.action_space.seed(seed)
         words, episodes = [], 0
         for _ in range(1000):
             action = played.action_space.sample()
             observation, reward, terminated, truncated, _ = played.step(action)
-            words += [*observation.view("<u4"), reward == 0.0, terminated, truncated]
+            seen = [played.unwrapped.state, observation][version].astype("<f4").view("<u4")
+            words += [*seen, reward == 0.0, terminated, truncated]
             if terminated or truncated:
                 episodes += 1
                 played.reset()
-        lines.append(f"play {seed} {digest(words):016x} {episodes}")
+        lines.append(f"play Acrobot-v{version} {seed} {digest(words):016x} {episodes}")
     lines.append(
         "# mixed SEED: integers(3), uniform(-1, 2) (bits of f64), integers(5), four times over"
     )

@@ -19,6 +19,7 @@ use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
 use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup, Task};
+use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use bits::training;
 use cortex_m_rt::entry;
@@ -133,6 +134,7 @@ fn environment<A: Arithmetic, T: Task>() {
     let mut seeds = SeedSequence::new(black_box(42));
     for seed in seeds.spawn(black_box(2)) {
         let mut acrobot = TimeLimit::of(Acrobot::<A, T>::with_rng(seed.clone().into()));
+        let mut trajectory = Trajectory::<A::Scalar, 8>::new();
         let inner = acrobot.inner_mut();
         let _ = black_box((
             inner.set_params(params()),
@@ -152,7 +154,8 @@ fn environment<A: Arithmetic, T: Task>() {
         for _ in 0..black_box(10) {
             let action = Action::sample(acrobot.inner_mut().rng_mut());
             let _ = black_box((
-                acrobot.step(action),
+                trajectory.step(&mut acrobot, action),
+                trajectory.step_torque(&mut acrobot, number()),
                 Action::try_from(black_box(3)),
                 acrobot.step_torque(number()),
             ));
@@ -162,6 +165,9 @@ fn environment<A: Arithmetic, T: Task>() {
             let _ = figure.redraw(&shown, &mut display, &Theme::MONOCHROME);
             black_box(display.data());
             shown = figure;
+        }
+        for transition in trajectory.iter() {
+            black_box(transition);
         }
     }
 }
