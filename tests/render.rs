@@ -4,7 +4,7 @@
 use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Frame, Theme};
 use acrobot::{Acrobot, Params, Portable, State};
-use bits::{Digest, oled};
+use bits::oled;
 use common::canvas::Canvas;
 use common::numbers;
 use embedded_graphics::Pixel;
@@ -79,25 +79,10 @@ fn the_drawing_in_braille_equals_its_snapshot() {
     common::assert_snapshot("ansi.txt", &(figure(0.6, -1.5).braille() + "\n"));
 }
 
-/// Promise 2 for pictures: the firmware `oled` draws the same with the driver of a display.
+/// Promise 2 for pictures: the firmware `bench` draws the same.
 #[test]
 fn the_oled_episode_equals_its_digest() {
-    let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
-    let (mut digest, mut frames) = (Digest::default(), 0);
-    let drawn = oled::play(&mut canvas, |canvas| {
-        frames += 1;
-        let lit =
-            |x: usize, y: usize| u64::from(canvas.pixels[y * 128 + x] == Some(BinaryColor::On));
-        for word in 0..128 {
-            // Eight columns of eight rows.
-            let (left, top) = (word % 16 * 8, word / 16 * 8);
-            let bits = (0..64).map(|bit| lit(left + bit / 8, top + bit % 8) << bit);
-            digest.add(bits.sum());
-        }
-    });
-    assert_eq!(drawn, Ok(()));
-    let expected = (oled::FRAMES, oled::DIGEST);
-    assert!((frames, digest.0) == expected, "{frames}, {:#018x}", digest.0);
+    assert_eq!(oled::drawn(), oled::DRAWN);
 }
 
 #[test]
