@@ -2,6 +2,8 @@
 //! not exist. `cargo build --release --bin no_panic --features no_panic` is the whole test; nothing
 //! runs. CI builds it with the oldest and the newest Rust, at opt-level 3, 2, "s" and "z".
 //!
+//! `Trajectory`'s `write_csv` and `rows` are not called: core's formatting of floats can panic.
+
 #![no_std]
 #![no_main]
 
