@@ -22,10 +22,10 @@ pub const REWARD_THRESHOLD: f32 = -100.0;
 pub struct Step<O = [f32; 6]> {
     /// The observation of the new state.
     pub observation: O,
-    /// −1, or 0 if `terminated`; of `Swingup` and `Balance` from 0 to 1.
+    /// The task's reward: −1, or 0 if `terminated`; of `Swingup` and `Balance` from 0 to 1.
     pub reward: f32,
-    /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1. Never in
-    /// `Swingup` and `Balance`.
+    /// Whether the task ended the episode, in Gymnasium's where −cos θ1 − cos(θ1 + θ2) > 1. Never
+    /// in `Swingup` and `Balance`.
     pub terminated: bool,
     /// Whether a [`TimeLimit`](crate::TimeLimit) ended the episode.
     pub truncated: bool,

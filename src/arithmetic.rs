@@ -44,13 +44,6 @@ pub use crate::physics::model::{Form, Modeled};
 /// 99.75 % of its steps are [bit-identical to
 /// Gymnasium's](crate::guide::parity#bit-identical-steps), about as many as between Gymnasium on
 /// two CPUs. `src/math/sines/correctly_rounded.rs` explains the method.
-///
-/// ```
-/// use acrobot::arithmetic::{Arithmetic, Reference};
-///
-/// let (sin, cos) = Reference::sin_cos(1.0);
-/// assert_eq!([sin, cos].map(f64::to_bits), [0x3fea_ed54_8f09_0cee, 0x3fe1_4a28_0fb5_068c]);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reference;

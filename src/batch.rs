@@ -53,7 +53,7 @@ use crate::physics::{State, default_model, model};
 use crate::task::{Gymnasium, Of, ResetBounds, Task};
 use buffers::{check_length, take_mut};
 use lane_params::Own;
-use settings::{Parameters, Settings};
+use settings::Settings;
 use storage::SlicesMut;
 use work::Work;
 
@@ -63,13 +63,7 @@ use work::Work;
 /// child, under a [`TimeLimit`](crate::TimeLimit), whatever `N` and the [SIMD
 /// instructions](SimdLevel).
 ///
-/// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32:
-///
-/// ```compile_fail,E0080
-/// # use acrobot::{Fast, batch::{Batch, Block}, numpy::Pcg64, task::Gymnasium};
-/// let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 33]);
-/// let batch = Batch::<Fast, _, Gymnasium, 33>::new(42, memory);
-/// ```
+/// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32, or the program does not compile.
 ///
 /// # Snapshots
 ///
@@ -119,16 +113,16 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         check_length("blocks", blocks.len(), generators.len().div_ceil(N))?;
         const { default_model::<A, Of<T>>() };
         let model = model::<A>(T::PARAMS.cast());
-        let parameters = if lane_params.is_empty() {
-            Parameters::Shared(model)
+        let shared = if lane_params.is_empty() {
+            Some(model)
         } else {
             check_length("lane_params", lane_params.len(), blocks.len())?;
             lane_params.fill(LaneParams::shared(&model));
-            Parameters::Own
+            None
         };
         let mut batch = Self {
             settings: Settings {
-                parameters,
+                shared,
                 bounds: T::RESET_BOUNDS,
                 max_steps: T::MAX_STEPS,
                 autoreset: Autoreset::default(),
@@ -299,7 +293,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         self.settings.max_steps
     }
 
-    /// Sets the number of steps after which episodes are truncated.
+    /// Sets [`max_steps`](Self::max_steps).
     pub fn set_max_steps(&mut self, max_steps: NonZeroU32) {
         self.settings.max_steps = max_steps;
     }

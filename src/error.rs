@@ -57,18 +57,11 @@ pub enum Error {
     /// A text that is not a seed.
     #[cfg(feature = "std")]
     MalformedSeed {
-        /// The first character that is not a decimal digit; `None` for an empty text.
+        /// The first character that is not a decimal digit or beyond the largest number of digits;
+        /// `None` for an empty text.
         found: Option<char>,
         /// Its position, counted from 1.
         position: usize,
-    },
-    /// The text of a seed has too many digits.
-    #[cfg(feature = "std")]
-    SeedTooLong {
-        /// The length of the text, bytes.
-        len: usize,
-        /// The largest number of digits.
-        limit: usize,
     },
 }
 
@@ -102,9 +95,7 @@ impl Error {
             Self::NoSuchIndex { .. } => "a batch has no acrobot with this index",
             Self::UnknownAction(_) => "an action must be 0, 1 or 2",
             #[cfg(feature = "std")]
-            Self::MalformedSeed { .. } => "a seed must be a decimal integer of at least 0",
-            #[cfg(feature = "std")]
-            Self::SeedTooLong { .. } => "a seed has too many digits",
+            Self::MalformedSeed { .. } => "a seed must be a number of 1 to 4300 decimal digits",
         }
     }
 }
@@ -135,15 +126,11 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
             ),
             #[cfg(feature = "std")]
             Error::MalformedSeed { found, position } => {
-                f.write_str("seed must be a decimal integer of at least 0, got ")?;
+                f.write_str("seed must be a number of 1 to 4300 decimal digits, got ")?;
                 match found {
                     Some(found) => write!(f, "{found:?} as character {position}"),
                     None => f.write_str("an empty text"),
                 }
-            }
-            #[cfg(feature = "std")]
-            Error::SeedTooLong { len, limit } => {
-                write!(f, "seed must have at most {limit} digits, got {len} bytes")
             }
         }
     }

@@ -30,8 +30,6 @@ use embedded_graphics_core::pixelcolor::{BinaryColor, Rgb888};
 
 #[cfg(feature = "std")]
 pub use frame::Frame;
-#[cfg(feature = "std")]
-pub(crate) use frame::text;
 
 use crate::acrobot::Acrobot;
 use crate::arithmetic::{Arithmetic, Real};

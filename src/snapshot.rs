@@ -13,25 +13,7 @@ use crate::task::Task;
 /// Incremented whenever the fields of any snapshot change.
 const VERSION: u32 = 5;
 
-/// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile:
-///
-/// ```compile_fail,E0080
-/// use acrobot::arithmetic::Arithmetic;
-/// use acrobot::{Acrobot, Fast};
-///
-/// #[derive(Clone, Copy, Debug, Default, PartialEq)]
-/// struct Named;
-///
-/// impl Arithmetic for Named {
-///     const NAME: &'static str = "seventeen letters";
-///     type Scalar = f32;
-///     fn sin_cos(x: f32) -> (f32, f32) {
-///         Fast::sin_cos(x)
-///     }
-/// }
-///
-/// serde_json::to_string(&Acrobot::<Named>::new(42)).unwrap();
-/// ```
+/// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile.
 const LIMIT: usize = 16;
 
 /// The first field of a snapshot of an acrobot or a batch. Zero-sized: its contents are constants,

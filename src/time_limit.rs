@@ -72,12 +72,6 @@ impl<E> TimeLimit<E> {
         &mut self.inner
     }
 
-    /// Returns the wrapped environment and drops the limit.
-    #[must_use]
-    pub fn into_inner(self) -> E {
-        self.inner
-    }
-
     /// Counts a step. Returns whether the episode is truncated.
     #[inline]
     pub(crate) fn count(&mut self) -> bool {

@@ -63,18 +63,19 @@ fn parameters_are_described_with_their_units_and_ranges() {
         let (of, field) = name.rsplit_once('.').unwrap_or(("", name));
         let field = field.split('[').next().unwrap();
         let declared = if of.is_empty() { field } else { of };
-        check("src/physics/params.rs", &format!("pub {declared}: "), unit, range);
+        check("src/physics/params.rs", ["pub ", declared, ": "], unit, range);
         if of.is_empty() {
-            check("bindings/c/src/data.rs", &format!("pub {field}: "), unit, range);
+            let end = if name.ends_with(']') { "[" } else { ";" };
+            check("bindings/c/include/acrobot.h", ["float ", field, end], unit, range);
         }
         let camel_case = match of {
             "" => field.replace("_of_mass", "OfMass").replace("_velocity", "Velocity"),
             _ => field.replace("joint", of),
         };
         let camel_case = camel_case.replace("_noise", "Noise");
-        check("bindings/npm/package/index.d.ts", &format!("{camel_case}: "), unit, range);
-        let python = format!("{}: ", IN_PYTHON[place]);
-        check("bindings/python/python/acrobot_rs/parameters.py", &python, unit, range);
+        check("bindings/npm/package/index.d.ts", ["", &camel_case, ": "], unit, range);
+        let python = ["", IN_PYTHON[place], ": "];
+        check("bindings/python/python/acrobot_rs/parameters.py", python, unit, range);
     }
 }
 
@@ -105,18 +106,18 @@ const IN_PYTHON: [&str; 21] = [
 
 /// The comment on a declaration's line and on those above it has the unit and the range, or says
 /// that they are those of another parameter, as in "As `mass1`".
-fn check(file: &str, declaration: &str, unit: &str, range: &str) {
-    let text = text_of(file);
+fn check(file: &str, [start, name, end]: [&str; 3], unit: &str, range: &str) {
+    let (text, declaration) = (text_of(file), [start, name, end].concat());
     let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
-    let at = lines.iter().position(|line| line.starts_with(declaration));
+    let at = lines.iter().position(|line| line.starts_with(&declaration));
     let at = at.unwrap_or_else(|| panic!("{file} has no {declaration}"));
-    let is_comment = |line: &&&str| ["///", "/**", "#:"].iter().any(|mark| line.starts_with(mark));
+    let is_comment = |line: &&&str| ["//", "/**", "#:"].iter().any(|mark| line.starts_with(mark));
     let above = lines[..at].iter().rev().take_while(is_comment);
     let found: Vec<&str> = above.copied().chain([lines[at]]).collect();
     let found = found.join(" ");
     if let Some((_, other)) = found.split_once("As `").or_else(|| found.split_once("as `")) {
         let (other, _) = other.split_once('`').unwrap();
-        return check(file, &format!("pub {other}: "), unit, range);
+        return check(file, [start, other, end], unit, range);
     }
     assert!(found.contains(unit) && found.contains(range), "{file}: {found:?}: {unit}; {range}");
 }

@@ -3,10 +3,9 @@
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
 use acrobot::batch::VecBatch;
 use acrobot::control::inverse_dynamics;
-use acrobot::env::{AcrobotEnv, RenderMode};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::{Dynamics, Joints, Pendulum};
-use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
+use acrobot::{Acrobot, Params, Portable, State, TimeLimit};
 
 /// `Portable`'s scalar and sines with Gymnasium's form of the equations, where `Portable` has the
 /// lean one.
@@ -144,7 +143,6 @@ fn an_arithmetic_without_friction_rejects_it() {
         batch.set_params_of(1, with),
         batch.set_member(1, member),
         batch.set_draws(common::between(Params::DEFAULT, with)),
-        AcrobotEnv::new(Acrobot::<Fast>::new(0), RenderMode::None).set_params(with),
     ] {
         assert_eq!(result.unwrap_err().to_string(), rule);
     }

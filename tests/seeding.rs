@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use std::str::FromStr;
 
 use acrobot::batch::{Batch, Block};
-use acrobot::env::{Env, make};
+use acrobot::env::Env;
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Error, Fast, Portable};
@@ -59,7 +59,7 @@ fn samples_equal_gymnasiums() {
 
 #[test]
 fn box_samples_equal_gymnasiums() {
-    let space = make("Acrobot-v1").unwrap().observation_space();
+    let space = Acrobot::<Fast>::new(0).observation_space();
     for row in rows("box") {
         let mut rng = generator(row[0]);
         let drawn: Vec<u64> =
@@ -128,8 +128,10 @@ fn long_texts_are_seeds_up_to_a_limit() {
     let words = [0x0db9_182d_a261_8a7e, 0x23df_384a_98ce_fb0a];
     assert_eq!(seed(&"9".repeat(4300)).generate_state(), words);
     let error = "9".repeat(50_000_000).parse::<SeedSequence>().unwrap_err();
-    assert_eq!(error.to_string(), "seed must have at most 4300 digits, got 50000000 bytes");
-    assert!("0".repeat(4301).parse::<SeedSequence>().is_err());
+    assert_eq!(
+        error.to_string(),
+        "seed must be a number of 1 to 4300 decimal digits, got '9' as character 4301"
+    );
 }
 
 #[test]

@@ -6,7 +6,6 @@ use std::f64::consts::PI;
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
-use acrobot::render::Figure;
 use acrobot::task::{Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use common::{distance, numbers, text_of};
@@ -153,14 +152,4 @@ fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
     let mut episode = TimeLimit::new(acrobot, Swingup::MAX_STEPS);
     let lengths = (1..).find(|_| episode.step(Action::Positive).done());
     assert_eq!(lengths, Some(1000));
-}
-
-/// A picture shows the state, whatever the task observes.
-#[test]
-fn pictures_are_those_of_acrobots() {
-    let swingup = Acrobot::<Damped<Fast>, Swingup>::new(42);
-    let mut acrobot = Acrobot::<Fast>::new(0);
-    acrobot.set_state(swingup.state()).unwrap();
-    assert_eq!(Figure::new(&swingup), Figure::new(&acrobot));
-    assert_eq!(Figure::of(swingup.pendulum()), Figure::new(&acrobot));
 }

@@ -1,17 +1,15 @@
 //! A user's tasks run alone and in batches with equal bits, with rewards, ends, resets, parameters,
-//! observations and data of their own. The crate's task without an end is here, too.
+//! observations and data of their own.
 
 use core::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::batch::VecBatch;
-use acrobot::control::{difference, regulator};
-use acrobot::env::{AcrobotEnv, Env, RenderMode};
+use acrobot::env::Env;
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::saturate;
 use acrobot::rand_core::Rng;
 use acrobot::task::{Balance, ResetBounds, Seen, Task};
-use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, State};
 use common::twins::Twins;
 
 /// Bring the tip near a point, m, with little effort, which ends the episode.
@@ -82,8 +80,7 @@ fn own_tasks_run_in_batches_with_equal_bits() {
 
 #[test]
 fn own_tasks_are_environments() {
-    let env = AcrobotEnv::new(Acrobot::<Fast, Reach>::new(0), RenderMode::None);
-    let space = env.observation_space();
+    let space = Acrobot::<Fast, Reach>::new(0).observation_space();
     assert_eq!(space.high(), [4.0, 4.0, 20.0, f32::MAX, f32::MAX]);
     assert!(space.contains(&space.sample(&mut Pcg64::new(0))));
 }
@@ -94,26 +91,6 @@ fn a_balanced_acrobot_is_upright_with_a_reward_of_1() {
     assert_eq!(acrobot.step(Action::Zero).reward, 0.0);
     acrobot.set_state(State::UPRIGHT).unwrap();
     assert_eq!(acrobot.step(Action::Zero).reward, 1.0);
-}
-
-/// No state ends the episode, not even those of an acrobot that falls without torque.
-#[test]
-fn a_regulator_with_the_tasks_motor_balances() {
-    let mut acrobot = TimeLimit::of(Acrobot::<Portable, Balance>::new(0));
-    let q = [0, 1, 2, 3].map(|i| core::array::from_fn(|j| f64::from(i == j)));
-    acrobot.set_state(State::UPRIGHT).unwrap();
-    let regulator = regulator(acrobot.inner().pendulum(), 0.0, &q, 1.0).unwrap();
-    for (seed, largest) in (0..100).flat_map(|seed| [(seed, 0.0), (seed, 10.0)]) {
-        acrobot.reset_with_seed(seed);
-        let mut rewards = Vec::new();
-        for step_number in 1..=500 {
-            let deviation = difference(acrobot.state(), State::UPRIGHT);
-            let step = acrobot.step_torque(saturate(regulator.torque(deviation), largest)).unwrap();
-            assert_eq!((step.terminated, step.truncated), (false, step_number == 500));
-            rewards.push(step.reward);
-        }
-        assert_eq!(rewards.iter().all(|reward| *reward > 0.9), largest > 0.0, "{seed}");
-    }
 }
 
 /// An acrobot and a batch hang at the point that they are given.

@@ -1,21 +1,17 @@
 // Serves a folder, and launches a browser without a window: for the tests of the package, and of
-// the page in ../../examples/web. The browser is Debian's Chromium by Playwright, or with
-// `ENGINE=firefox` or `webkit` one by WebDriver.
+// the page in ../../examples/web. The browser is Debian's Chromium by Playwright, or, for the
+// package, with `ENGINE=firefox` or `webkit` one by WebDriver.
 
 import { context } from "esbuild";
 import { chromium } from "playwright-core";
 
 import * as webdriver from "./webdriver.mjs";
 
-const engine = process.env.ENGINE ?? "chromium";
-
-/** For tests that change the browser's settings, or the page before it runs. */
-export const inChromium = { skip: engine !== "chromium" && "WebDriver cannot" };
-
 export async function launch(servedir) {
   const server = await context({});
   const { port } = await server.serve({ servedir, host: "127.0.0.1", port: 0 });
-  const browser = await (inChromium.skip ? webdriver.launch(engine) : launchChromium());
+  const { ENGINE } = process.env;
+  const browser = await (ENGINE ? webdriver.launch(ENGINE) : launchChromium());
   const close = () => Promise.all([browser.close(), server.dispose()]);
   return { browser, origin: `http://localhost:${port}/`, close };
 }

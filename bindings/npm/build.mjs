@@ -1,15 +1,17 @@
 // Builds the package into dist/, and packs it.
 
-import { execFileSync } from "node:child_process";
+import { execFile, execFileSync } from "node:child_process";
 import { cpSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { basename } from "node:path";
 import { fileURLToPath } from "node:url";
+import { promisify } from "node:util";
 import { deflateRawSync } from "node:zlib";
 
 import { buildSync } from "esbuild";
 
 process.chdir(fileURLToPath(new URL(".", import.meta.url)));
 const run = (command, args, env) => execFileSync(command, args, { stdio: "inherit", env });
+const runBeside = promisify(execFile);
 
 /**
  * A loop is unrolled fully or not at all, and only up to 3 iterations: loops over the 4 lanes of a
@@ -25,23 +27,25 @@ const PASSES = [
   "--strip-debug", "--strip-producers", "--strip-target-features",
 ];
 
-/** Compiles a crate of this workspace to target/`library`.wasm, and returns its bytes. */
-function compile(library) {
+/** Compiles this workspace for WebAssembly. */
+function compile() {
   const flags = [...SMALL.map((option) => `-Cllvm-args=${option}`), "-Ctarget-feature=+simd128"];
+  const env = { ...process.env, RUSTFLAGS: flags.join(" ") };
   // Named, because a user's configuration of Cargo may have others.
   const places = ["--target", "wasm32-unknown-unknown", "--target-dir", "target"];
-  const args = ["--quiet", "--locked", "--release", ...places];
-  const env = { ...process.env, RUSTFLAGS: flags.join(" ") };
-  run("cargo", ["build", "--package", library.replace("_", "-"), ...args], env);
+  run("cargo", ["build", "--workspace", "--quiet", "--locked", "--release", ...places], env);
+}
+
+/** Makes a library of the workspace smaller, to target/`library`.wasm, and returns its bytes. */
+async function optimize(library) {
   const [text, out] = [`target/${library}.wat`, `target/${library}.wasm`];
   const built = `target/wasm32-unknown-unknown/release/${library}.wasm`;
   const time = (file) => statSync(file, { throwIfNoEntry: false })?.mtimeMs ?? 0;
-  // wasm-opt needs most of the time.
   if (time(out) < Math.max(time(built), time("build.mjs"), time("package-lock.json"))) {
     // As text first, for the test that nothing panics: in the binary format, code that is never
     // reached also ends in `unreachable`.
-    run("node_modules/.bin/wasm-opt", [built, "-S", "-o", text, ...PASSES]);
-    run("node_modules/.bin/wasm-as", [text, "-o", out, "--all-features"]);
+    await runBeside("node_modules/.bin/wasm-opt", [built, "-S", "-o", text, ...PASSES]);
+    await runBeside("node_modules/.bin/wasm-as", [text, "-o", out, "--all-features"]);
   }
   return readFileSync(out);
 }
@@ -49,8 +53,8 @@ function compile(library) {
 const ESM = { absWorkingDir: process.cwd(), bundle: true, format: "esm" };
 
 /** Writes a file of the package with its module inside: a browser loads it with one request. */
-function bundle(entry, library) {
-  const module = compile(library);
+async function bundle(entry, library) {
+  const module = await optimize(library);
   const exports = WebAssembly.Module.exports(new WebAssembly.Module(module));
   const names = exports.map(({ name }) => name);
   // A string, because all bundlers and servers pass strings on unchanged, and a constructor can
@@ -77,9 +81,12 @@ rmSync("dist", { recursive: true, force: true });
 mkdirSync("dist");
 // Names of the package stay, for messages and debuggers; those of the decompressor become short.
 buildSync({ entryPoints: ["tiny-inflate"], minify: true, outfile: "target/inflate.js", ...ESM });
-bundle("index", "acrobot_npm");
-bundle("policies", "acrobot_learner");
-bundle("control", "acrobot_control");
+compile();
+await Promise.all([
+  bundle("index", "acrobot_npm"),
+  bundle("policies", "acrobot_learner"),
+  bundle("control", "acrobot_control"),
+]);
 // npm shows what users need to know.
 writeFileSync("dist/README.md", readFileSync("README.md", "utf8").split("\n## Build and test")[0]);
 for (const file of ["package/package.json", "../../LICENSE-APACHE", "../../LICENSE-MIT"]) {

@@ -1,37 +1,20 @@
 """Records torch's actions on 10,000 observations: writes actions.bin beside policy.bin, which it
 reads.
 
-    python ../../bindings/python/train_ppo.py 3 --save policy.bin
-    python record.py
-
 Each byte has four actions, the first in its lowest bits. 3 stands for a tie, two scores that differ
 by less than 1e-4. The observations are those of child 0 of seed 1 under random actions with seed 1.
 """
 
-import struct
 from pathlib import Path
 
-import acrobot_rs  # noqa: F401 registers
 import gymnasium as gym
 import numpy as np
 import torch
 
+from acrobot_rs import policy
+
 HERE = Path(__file__).parent
-
-
-def perceptron(content):
-    """The file as a module of torch."""
-    _, count, _, inputs, _ = struct.unpack_from("<4sBBHf", content)
-    modules, at = [], 12 + 4 * count
-    for i in range(count):
-        outputs, activation, _ = struct.unpack_from("<HBB", content, 12 + 4 * i)
-        numbers = np.frombuffer(content, "<f4", outputs * (1 + inputs), at)
-        bias, weight = np.split(numbers.reshape(outputs, 1 + inputs), [1], axis=1)
-        linear = torch.nn.Linear(inputs, outputs)
-        linear.load_state_dict({"bias": torch.tensor(bias[:, 0]), "weight": torch.tensor(weight)})
-        modules += [linear, [torch.nn.Identity(), torch.nn.Tanh(), torch.nn.ReLU()][activation]]
-        inputs, at = outputs, at + numbers.nbytes
-    return torch.nn.Sequential(*modules)
+ACTIVATIONS = {"none": torch.nn.Identity(), "tanh": torch.tanh, "relu": torch.relu}
 
 
 def observations(count):
@@ -44,9 +27,10 @@ def observations(count):
         seen, *_ = envs.step(np.array([actions.sample()]))
 
 
-with torch.no_grad():
-    policy = perceptron((HERE / "policy.bin").read_bytes())
-    scores = policy(torch.tensor(np.array(list(observations(10_000)))))
+scores = torch.tensor(np.array(list(observations(10_000))))
+for weights, biases, activation in policy.load(HERE / "policy.bin").layers:
+    weights, biases = torch.tensor(weights), torch.tensor(biases)
+    scores = ACTIVATIONS[activation](torch.nn.functional.linear(scores, weights, biases))
 two, actions = scores.topk(2).values, scores.argmax(1)
 actions[two[:, 0] - two[:, 1] < 1e-4] = 3
 quarters = actions.numpy().astype("u1").reshape(-1, 4)

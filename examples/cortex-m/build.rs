@@ -1,6 +1,4 @@
-//! Gives the linker the memory, defmt's sections and, with the feature `libgcc`, libgcc's doubles.
-
-mod libgcc;
+//! Gives the linker the memory and defmt's sections.
 
 use std::{env, error::Error};
 
@@ -25,8 +23,5 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rustc-link-arg-bin=balance=--defsym=RAM_SIZE=64K");
     // It has batches in all arithmetics and is never flashed.
     println!("cargo:rustc-link-arg-bin=no_panic=--defsym=FLASH_SIZE=1M");
-    if env::var_os("CARGO_FEATURE_LIBGCC").is_some() {
-        libgcc::link()?;
-    }
     Ok(())
 }

@@ -42,9 +42,8 @@ def cost(mnemonic, operands, taken, after_load):
     return 1 + branch
 
 
-def per_instruction(image, most=None):
-    """The mean cycles per instruction of `STEPS` steps of the firmware `image`, or of its first
-    `most` instructions."""
+def per_instruction(image):
+    """The mean cycles per instruction of `STEPS` steps of the firmware `image`."""
     command = ["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image]
     listing = subprocess.check_output(command, text=True)
     code = {}
@@ -70,8 +69,6 @@ def per_instruction(image, most=None):
             steps += 1
             if steps > STEPS:
                 break
-        if instructions == most:
-            break
         if steps > 0 and previous is not None:
             mnemonic, operands = code[previous]
             taken = address not in (previous + 2, previous + 4)

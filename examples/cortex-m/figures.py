@@ -5,10 +5,9 @@
     python3 figures.py --update    writes the tables
     python3 figures.py cores       only this table; --help names all
 
-`steps` counts instructions, stack and RAM, `bench`, `learn`, `policy` and `balance` count
-instructions. Flash is that of `minimal` minus that of the same firmware without an acrobot, or
-without an addition to it. `cycles.py` estimates the cycles per instruction. Each figure is the same
-in every run, the estimates too.
+The firmware counts instructions, stack and RAM. Flash is that of `minimal` minus that of the same
+firmware without an acrobot, or without an addition to it. `cycles.py` estimates the cycles per
+instruction. Each figure is the same in every run, the estimates too.
 """
 
 import argparse
@@ -27,17 +26,11 @@ DOCUMENT = pathlib.Path("../../docs/embedded-figures.md")
 M4F = "thumbv7em-none-eabihf"
 TUNED = "-C target-cpu=cortex-m4"
 ARITHMETICS = {name: f"`{name.title()}`" for name in ("fast", "micro", "reference", "portable")}
-COLUMNS = ARITHMETICS | {
-    "reference_libgcc": "`Reference`, libgcc",
-    "portable_libgcc": "`Portable`, libgcc",
-}
 ROWS = {
     "step": "instructions per step, with observation, end test and resets",
     "cycles": "cycles per step, estimated",
     "tuned": f"cycles per step with `{TUNED}`, estimated",
     "rate": "steps per second at 64 MHz with that, estimated",
-    "sin_cos": "instructions per sine and cosine",
-    "reset": "instructions per reset",
     "draw": "instructions per frame of 128×64 pixels",
     "redraw": "instructions per frame if only what moved is drawn",
     "flash": "flash of the crate with seeding, bytes",
@@ -46,7 +39,6 @@ ROWS = {
     "stack": "stack of a step, bytes",
     "learn": "instructions per step of training",
     "training": "training until the mean return of 100 episodes is −100, millions of instructions",
-    "milliseconds": "time of this training at 168 MHz, estimated, ms",
     "decision": "instructions per decision of a perceptron with 64 and 64 units",
     "decision_ram": "RAM of the whole firmware that plays this perceptron, bytes",
     "ram": "RAM of the whole firmware that trains, bytes",
@@ -71,7 +63,7 @@ CORES = {
 }
 CORE_ROWS = {name: f"{core.words}, `{core.target}`" for name, core in CORES.items()}
 LIMITS = {"10_Nm": "10 N m, 1,000 initial states"}
-LIMITS |= {f"{limit}_Nm": f"{limit} N m, 100" for limit in (7, 5, 2, 1)}
+LIMITS |= {f"{limit}_Nm": f"{limit} N m, 100" for limit in (2, 1)}
 BALANCE = {
     "plan_s": "time of the plan, s",
     "plan_millions": "planning, millions of instructions",
@@ -84,6 +76,7 @@ BALANCE = {
     "flash_bytes": "flash of the whole firmware, bytes",
     "ram_bytes": "RAM of the whole firmware, bytes",
 }
+CONTROLLED = {name: ARITHMETICS[name] for name in ("fast", "reference")}
 CONTROL = {
     "linearize": "`linearize`",
     "linearize_step": "`linearize_step`",
@@ -95,14 +88,10 @@ CONTROL = {
 ADDITIONS = {
     "message": "flash of `set_params`, and `message` of its error",
     "display": "flash of `set_params`, and `Display` of its error",
-    "cell": "flash of a `RefCell`, with a panic handler that prints",
     "serde": "flash of saving and loading with serde, postcard and a CRC",
     "lqr": "flash of `linearize_step`, `lqr`, `deviation` and the regulator's torque",
     "lqr_stack": "stack of `lqr`",
 }
-LEVELS = ["2", '"s"', '"z"']
-LEVEL_ROWS = {f"step {level}": f"`{level}`, instructions per step" for level in LEVELS}
-LEVEL_ROWS |= {f"flash {level}": f"`{level}`, bytes of flash" for level in LEVELS}
 ADDED, UPRIGHT = "what a firmware adds to an acrobot", "instructions at 100 Hz, upright"
 
 
@@ -117,12 +106,10 @@ def run(*command, rustflags="", machine="", minimal=""):
     return done.stdout
 
 
-def cargo(command, binary, target=M4F, features="", level="3", **settings):
-    # With `defmt` the flash with a `RefCell` is 24 bytes larger. The table has it so.
-    own = {"steps": "", "minimal": "acrobot/defmt"}.get(binary, binary)
+def cargo(command, binary, target=M4F, features="", **settings):
+    own = "" if binary in ("steps", "minimal") else binary
     options = ["--target", target, "--target-dir", "target"]  # whatever the user's configuration
     options += ["--features", f"{own} {features}", "--bin", binary]
-    options += ["--config", f"profile.release.opt-level={level}"]
     return run("cargo", command, "--quiet", "--locked", "--release", *options, **settings)
 
 
@@ -156,27 +143,16 @@ def minimal(arithmetics, **options):
 
 
 def measure_m4f():
-    figures = {}
-    for features, arithmetics in [("", ARITHMETICS), ("libgcc", ["reference", "portable"])]:
-        suffix = features and f"_{features}"
-        both = printed("steps", features=features) | printed("bench", features=features)
-        for (arithmetic, figure), value in both.items():
-            figures[arithmetic + suffix, figure] = value
-        for arithmetic, path, size in minimal(arithmetics, features=features):
-            column = arithmetic + suffix
-            figures[column, "flash"] = size
-            each = cycles.per_instruction(path)
-            figures[column, "cycles"] = round(figures[column, "step"] * each)
-    tuned = dict(steps(ARITHMETICS, rustflags=TUNED))
-    for arithmetic, path, _ in minimal(ARITHMETICS, rustflags=TUNED):
-        each = round(tuned[arithmetic] * cycles.per_instruction(path))
-        figures[arithmetic, "tuned"] = each
-        figures[arithmetic, "rate"] = int(float(f"{64e6 / each:.3g}"))
+    figures = printed("steps") | printed("bench") | printed("learn") | printed("policy")
+    for arithmetic, path, size in minimal(ARITHMETICS):
+        figures[arithmetic, "flash"] = size
+        each = cycles.per_instruction(path)
+        figures[arithmetic, "cycles"] = round(figures[arithmetic, "step"] * each)
+    for arithmetic, step in steps(ARITHMETICS, rustflags=TUNED):
+        each = cycles.per_instruction(image("minimal", minimal=arithmetic, rustflags=TUNED))
+        figures[arithmetic, "tuned"] = tuned = round(step * each)
+        figures[arithmetic, "rate"] = int(float(f"{64e6 / tuned:.3g}"))
     [(_, _, figures["fast", "physics"])] = minimal(["physics"])
-    figures |= printed("learn") | printed("policy")
-    # The first three episodes. Nothing is printed before the tenth.
-    each = cycles.per_instruction(image("learn"), most=3_000_000)
-    figures["fast", "milliseconds"] = round(figures["fast", "training"] * each / 168 * 1000)
     return figures
 
 
@@ -207,15 +183,6 @@ def sizes(arithmetics, **options):
     return [(arithmetic, size) for arithmetic, _, size in minimal(arithmetics, **options)]
 
 
-def measure_levels():
-    figures = {}
-    for level in LEVELS:
-        for row, measure in ("step", steps), ("flash", sizes):
-            values = measure(ARITHMETICS, level=level)
-            figures |= {(arithmetic, f"{row} {level}"): value for arithmetic, value in values}
-    return figures
-
-
 def measure_balance():
     # Its messages name source files by their paths, whose length would count.
     home = os.environ.get("CARGO_HOME", pathlib.Path.home() / ".cargo")
@@ -237,14 +204,13 @@ def measure_additions():
 
 Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
-    "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
+    "m4f": Table("on a Cortex-M4F", ARITHMETICS, ROWS, measure_m4f),
     "additions": Table(ADDED, {"fast": "bytes"}, ADDITIONS, measure_additions),
     "balance": Table("largest torque", LIMITS, BALANCE, measure_balance),
-    "control": Table(UPRIGHT, ARITHMETICS, CONTROL, lambda: printed("bench", features="")),
+    "control": Table(UPRIGHT, CONTROLLED, CONTROL, lambda: printed("bench")),
     "cores": Table("instructions per step", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(steps)),
     "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: of_cores(stacks)),
     "sizes": Table("bytes of flash", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(sizes)),
-    "levels": Table("`opt-level` on a Cortex-M4F", ARITHMETICS, LEVEL_ROWS, measure_levels),
 }
 
 

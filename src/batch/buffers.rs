@@ -6,10 +6,9 @@ use crate::error::Error;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct StepBuffers<'a, O = [f32; 6]> {
-    /// −1, or 0 if the acrobot terminated or was only reset; of `Swingup` and `Balance`
-    /// from 0 to 1.
+    /// The rewards; 0 where an acrobot was only reset.
     pub rewards: &'a mut [f32],
-    /// Whether the new state is a goal state.
+    /// Whether the task ended each episode.
     pub terminated: &'a mut [bool],
     /// Whether the time limit is reached.
     pub truncated: &'a mut [bool],

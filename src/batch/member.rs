@@ -2,7 +2,6 @@
 
 use super::Batch;
 use super::buffers::take_mut;
-use super::settings::Parameters;
 use super::storage::{SlicesMut, Storage};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
@@ -70,8 +69,8 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         self.check_params(&member.params)?;
         member.state.validate()?;
         self.block_of(index)?;
-        match &self.settings.parameters {
-            Parameters::Shared(model) if model.params.same(&member.params) => {}
+        match &self.settings.shared {
+            Some(model) if model.params == member.params => {}
             _ => self.set_params_of(index, member.params)?,
         }
         let SlicesMut { blocks, generators, lane_params, draws } = self.storage.slices_mut();

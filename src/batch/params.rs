@@ -2,7 +2,6 @@
 
 use super::Batch;
 use super::lane_params::LaneParams;
-use super::settings::Parameters;
 use super::storage::Storage;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
@@ -15,16 +14,16 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     pub fn params_of(&self, index: usize) -> Option<Params<A::Scalar>> {
         let slices = self.storage.slices();
         slices.generators.get(index)?;
-        match &self.settings.parameters {
-            Parameters::Shared(model) => Some(model.params),
-            Parameters::Own => Some(slices.lane_params.get(index / N)?.get(index % N)),
+        match &self.settings.shared {
+            Some(model) => Some(model.params),
+            None => Some(slices.lane_params.get(index / N)?.get(index % N)),
         }
     }
 
     /// Whether each acrobot has its own parameters. Otherwise all share theirs.
     #[must_use]
     pub fn has_own_params(&self) -> bool {
-        matches!(self.settings.parameters, Parameters::Own)
+        self.settings.shared.is_none()
     }
 
     /// Sets the parameters of all acrobots for the next steps, with the errors of
@@ -34,7 +33,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         let model = model::<A>(params);
         let lane_params = self.storage.slices_mut().lane_params;
         lane_params.fill(LaneParams::shared(&model));
-        if let Parameters::Shared(shared) = &mut self.settings.parameters {
+        if let Some(shared) = &mut self.settings.shared {
             *shared = model;
         }
         Ok(())
@@ -79,8 +78,8 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         for params in (0..count).filter_map(|index| self.params_of(index)) {
             draws.check::<A>(&params)?;
         }
-        match (&self.settings.parameters, self.storage.slices_mut().draws) {
-            (Parameters::Own, Some(own)) => *own = draws,
+        match (&self.settings.shared, self.storage.slices_mut().draws) {
+            (None, Some(own)) => *own = draws,
             _ if draws == Draws::NONE => {}
             _ => return Err(Error::SharedParams),
         }

@@ -25,16 +25,9 @@ pub enum Autoreset {
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum Parameters<A: Arithmetic> {
-    /// All have those of this model.
-    Shared(Model<A::Scalar>),
-    /// Each has its own.
-    Own,
-}
-
-#[derive(Clone, Debug)]
 pub(super) struct Settings<A: Arithmetic, T> {
-    pub(super) parameters: Parameters<A>,
+    /// The parameters that all share. `None`: each has its own.
+    pub(super) shared: Option<Model<A::Scalar>>,
     pub(super) bounds: ResetBounds,
     pub(super) max_steps: NonZeroU32,
     pub(super) autoreset: Autoreset,

@@ -8,7 +8,6 @@ use super::block::Block;
 use super::buffers::StepBuffers;
 use super::inputs::Input;
 use super::lane_params::LaneParams;
-use super::settings::Parameters;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
@@ -19,9 +18,7 @@ type Memory<A, const N: usize> =
 
 type InVecs<A, T, const N: usize> = Batch<A, Memory<A, N>, T, N>;
 
-/// A [`Batch`] in `Vec`s, with the memory for the results of its steps.
-///
-/// It has all methods of [`Batch`]. Its steps return their results.
+/// A [`Batch`] in `Vec`s, with all its methods, whose steps return their results.
 ///
 /// A [`Batch`] of another length may replace the one inside. The next results need new memory:
 /// without it a step returns [`Error::OutOfMemory`], and the observations are empty.
@@ -52,10 +49,9 @@ pub struct VecBatch<A: Arithmetic, T: Task = Gymnasium, const N: usize = 16> {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StepResults<O = [f32; 6]> {
-    /// −1, or 0 if the acrobot terminated or was only reset; of `Swingup` and `Balance`
-    /// from 0 to 1.
+    /// The rewards; 0 where an acrobot was only reset.
     pub rewards: Vec<f32>,
-    /// Whether the new state is a goal state.
+    /// Whether the task ended each episode.
     pub terminated: Vec<bool>,
     /// Whether the time limit is reached.
     pub truncated: Vec<bool>,
@@ -66,16 +62,15 @@ pub struct StepResults<O = [f32; 6]> {
     pub final_observations: Vec<O>,
 }
 
-impl<O> Default for StepResults<O> {
-    /// No results.
-    fn default() -> Self {
-        Self {
-            rewards: Vec::new(),
-            terminated: Vec::new(),
-            truncated: Vec::new(),
-            observations: Vec::new(),
-            final_observations: Vec::new(),
-        }
+impl<O: Observation> StepResults<O> {
+    fn new(len: usize) -> Result<Self, Error> {
+        Ok(Self {
+            rewards: fill(0.0, len, len)?,
+            terminated: fill(false, len, len)?,
+            truncated: fill(false, len, len)?,
+            observations: fill(O::ZEROS, len, len)?,
+            final_observations: fill(O::ZEROS, len, len)?,
+        })
     }
 }
 
@@ -88,11 +83,7 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     pub fn new(seed: SeedSequence, len: usize) -> Result<Self, Error> {
         let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
         let storage = (blocks, fill(Pcg64::UNSEEDED, len, len)?, Vec::new(), Draws::NONE);
-        let batch = Batch::new(seed, storage)?;
-        let results = StepResults::default();
-        let mut batch = Self { batch, results };
-        batch.fit_results()?;
-        Ok(batch)
+        Ok(Self { batch: Batch::new(seed, storage)?, results: StepResults::new(len)? })
     }
 
     /// Allocates parameters for each acrobot, which [`set_params_of`](Batch::set_params_of) and
@@ -102,37 +93,30 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     ///
     /// [`Error::OutOfMemory`]. Then nothing changes.
     pub fn own_params(&mut self) -> Result<(), Error> {
-        if let Parameters::Shared(model) = &self.batch.settings.parameters {
+        if let Some(model) = &self.batch.settings.shared {
             let len = self.batch.len();
             self.batch.storage.2 = fill(LaneParams::shared(model), len.div_ceil(N), len)?;
-            self.batch.settings.parameters = Parameters::Own;
+            self.batch.settings.shared = None;
         }
         Ok(())
     }
 
-    /// Allocates new results if the batch has another length. If that fails, the results are empty.
+    /// Allocates new results if the batch has another length.
     fn fit_results(&mut self) -> Result<(), Error> {
         let len = self.batch.len();
         if self.results.rewards.len() != len {
-            self.results = StepResults::default();
-            self.results = StepResults {
-                rewards: fill(0.0, len, len)?,
-                terminated: fill(false, len, len)?,
-                truncated: fill(false, len, len)?,
-                observations: fill(T::Observation::ZEROS, len, len)?,
-                final_observations: fill(T::Observation::ZEROS, len, len)?,
-            };
+            self.results = StepResults::new(len)?;
         }
         Ok(())
     }
 
     /// The observations of the states, for example after a reset.
     pub fn observations(&mut self) -> &[T::Observation] {
-        if self.fit_results().is_ok() {
-            // It fails only for another length.
-            let _ = self.batch.observe(&mut self.results.observations);
+        let fits = self.fit_results();
+        match fits.and_then(|()| self.batch.observe(&mut self.results.observations)) {
+            Ok(()) => &self.results.observations,
+            Err(_) => &[],
         }
-        &self.results.observations
     }
 
     /// Calls [`Batch::step_into`] with actions or torques, and returns the results.

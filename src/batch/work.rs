@@ -6,7 +6,7 @@ use super::block::Block;
 use super::buffers::{StepBuffers, take_mut};
 use super::inputs::Inputs;
 use super::lane_params::LaneParams;
-use super::settings::{Parameters, Settings};
+use super::settings::Settings;
 use crate::arithmetic::Arithmetic;
 use crate::math::Kernel;
 #[cfg(feature = "rayon")]
@@ -33,7 +33,7 @@ impl<A: Arithmetic, T: Task, const N: usize> Kernel for Work<'_, A, T, N> {
     #[inline(always)]
     fn run<const HIDE: bool>(self) {
         let Self { settings, blocks, mut generators, mut inputs, mut buffers, .. } = self;
-        if let Parameters::Shared(model) = &settings.parameters {
+        if let Some(model) = &settings.shared {
             let shared = LaneParams::shared(model);
             for block in blocks {
                 let generators = take_mut(&mut generators, N);

@@ -11,15 +11,16 @@ use super::plan::Knot;
 use super::recovery::Recovery;
 use crate::arithmetic::Arithmetic;
 use crate::math::sealed::Sealed as _;
-use crate::math::{Kernel, Numbers, Real, SinCos};
+use crate::math::{Kernel, Numbers, Real, SimdLevel, SinCos};
 use crate::physics::{Model, State, plus_scaled, saturate, step, wrap};
 
-/// What the passes know of the machine.
+/// What the passes know of the machine, and the SIMD instructions that they use.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Machine<'a, A: Arithmetic> {
     pub(super) model: &'a Model<A::Scalar>,
     pub(super) recovery: &'a Recovery<A::Scalar>,
     pub(super) weights: &'a Weights<A::Scalar>,
+    pub(super) level: SimdLevel,
 }
 
 /// How far each plan is simulated.
@@ -57,7 +58,7 @@ pub(super) struct Forward<'a, A: Arithmetic, V> {
 impl<A: Arithmetic, V: Numbers<A::Scalar>> Kernel for Forward<'_, A, V> {
     #[inline(always)]
     fn run<const AVX512: bool>(self) {
-        let Machine { model, recovery, weights } = self.machine;
+        let Machine { model, recovery, weights, .. } = self.machine;
         let (params, weights, limit) = (model.params, *weights, recovery.limit);
         let [by_jump, arrival] = weights.jump_and_arrival();
         let lanes_model = model.zip(model, |x, _| V::splat(x));
@@ -134,7 +135,7 @@ type ToGo<V> = [V; 20];
 impl<A: Arithmetic, V: Numbers<A::Scalar>> Kernel for Backward<'_, A, V> {
     #[inline(always)]
     fn run<const AVX512: bool>(self) {
-        let Machine { model, recovery, weights } = self.machine;
+        let Machine { model, recovery, weights, .. } = self.machine;
         let local = Local { model: *model, limit: recovery.limit, weights: *weights };
         let [by_jump, arrival] = weights.jump_and_arrival();
         let (len, dampings) = (self.len, self.damping);

@@ -21,7 +21,7 @@ use super::matrix::{dot, identity, transpose};
 use super::passes::Machine;
 use super::plan::{Knot, NoPlan};
 use super::recovery::{Recovery, is_below, is_near};
-use super::tries;
+use super::tries::{self, Try};
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::sealed::Sealed as _;
@@ -76,40 +76,17 @@ impl<A: Arithmetic> Planner<A> {
     /// # Errors
     ///
     /// Those of `new`, and a weight is out of range.
-    pub fn with_cost(
-        params: Params<A::Scalar>,
-        limit: A::Scalar,
-        cost: Cost<A::Scalar>,
-    ) -> Result<Self, ControlError> {
-        Self::build(params, limit, cost, false)
-    }
-
-    /// As [`with_cost`](Self::with_cost), for a simulation that clamps velocities at the bounds of
-    /// its parameters, as Gymnasium's does. Plans may use that as a brake.
-    ///
-    /// # Errors
-    ///
-    /// Those of `with_cost`.
-    pub fn for_simulation(
-        params: Params<A::Scalar>,
-        limit: A::Scalar,
-        cost: Cost<A::Scalar>,
-    ) -> Result<Self, ControlError> {
-        Self::build(params, limit, cost, true)
-    }
-
     #[inline(never)] // saves flash
-    fn build(
+    pub fn with_cost(
         mut params: Params<A::Scalar>,
         limit: A::Scalar,
         cost: Cost<A::Scalar>,
-        clamps: bool,
     ) -> Result<Self, ControlError> {
         cost.check()?;
         let recovery = Recovery::new::<A>(params, limit)?;
         let infinity = A::Scalar::from_f64(f64::INFINITY);
         let bounds = [&mut params.max_velocity1, &mut params.max_velocity2];
-        let bounds = bounds.map(|x| if clamps { infinity } else { replace(x, infinity) });
+        let bounds = bounds.map(|bound| replace(bound, infinity));
         let model = Pendulum::new_unchecked(params, State::UPRIGHT);
         Ok(Self {
             recovery,
@@ -119,6 +96,17 @@ impl<A: Arithmetic> Planner<A> {
             is_holding: false,
             level: SimdLevel::widest(),
         })
+    }
+
+    /// The same planner for a simulation that clamps velocities at the bounds of its parameters, as
+    /// Gymnasium's does. Plans may use that as a brake.
+    #[must_use]
+    pub fn for_simulation(mut self) -> Self {
+        let infinity = A::Scalar::from_f64(f64::INFINITY);
+        let [max_velocity1, max_velocity2] = replace(&mut self.weights.bounds, [infinity; 2]);
+        let params = Params { max_velocity1, max_velocity2, ..*self.model.params() };
+        self.model = Pendulum::new_unchecked(params, State::UPRIGHT);
+        self
     }
 
     /// Plans from a state into memory of the caller, until a plan ends in a state from which the
@@ -224,9 +212,9 @@ impl<A: Arithmetic> Planner<A> {
         plan: &mut [Knot<A::Scalar>],
     ) -> (A::Scalar, State<A::Scalar>) {
         let (mut len, mut result) = (Some(plan.len()), (A::Scalar::ZERO, start));
-        tries::improve::<A, A::Scalar>(
-            self.machine(),
-            SimdLevel::Baseline,
+        tries::improve::<A, A::Scalar, 1>(
+            self.machine(SimdLevel::Baseline),
+            &mut [Try::new()],
             start,
             iterations,
             plan,
@@ -239,8 +227,9 @@ impl<A: Arithmetic> Planner<A> {
         result
     }
 
-    fn machine(&self) -> Machine<'_, A> {
-        Machine { model: self.model.model(), recovery: &self.recovery, weights: &self.weights }
+    fn machine(&self, level: SimdLevel) -> Machine<'_, A> {
+        let Self { model, recovery, weights, .. } = self;
+        Machine { model: model.model(), recovery, weights, level }
     }
 
     /// Whether a plan ends where the regulator succeeds, and no velocity reaches its bound.

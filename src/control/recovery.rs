@@ -41,12 +41,7 @@ pub(super) struct Recovery<S> {
 }
 
 impl<S: Real> Recovery<S> {
-    /// The regulator of a machine with these parameters, whose `dt` is the time between two
-    /// decisions, and a largest torque, N m.
-    ///
-    /// # Errors
-    ///
-    /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
+    /// See [`Planner::new`](super::planner::Planner::new).
     pub(super) fn new<A: Arithmetic<Scalar = S>>(
         params: Params<S>,
         limit: S,

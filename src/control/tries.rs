@@ -9,7 +9,7 @@ use super::passes::{Backward, Forward, Machine, Motion, Orders, lanes, set_lanes
 use super::plan::Knot;
 use crate::arithmetic::Arithmetic;
 use crate::math::sealed::Sealed as _;
-use crate::math::{Numbers, Real, SimdLevel};
+use crate::math::{Numbers, Real};
 use crate::physics::{State, sin_cos};
 
 /// An iteration counts as stalled if it lowers the cost by less than this part, or not at all. So
@@ -35,7 +35,7 @@ enum Phase {
 
 /// The plan in a lane.
 #[derive(Clone, Copy, Debug)]
-struct Try<S> {
+pub(super) struct Try<S> {
     phase: Phase,
     /// How many plans began before it.
     index: usize,
@@ -48,14 +48,15 @@ struct Try<S> {
     stalled: u32,
 }
 
-/// Improves plans from a state, each by at most so many iterations. `next` writes the next plan
-/// into a lane, and returns its length, or `None` if there is no other. `take` gets a plan that is
-/// done: how many plans began before it, its lane, its knots, its cost, and the state after it. It
-/// returns whether to go on. No cost is finite if the numbers overflow.
+/// Improves plans from a state, each by at most so many iterations, in lanes that begin with
+/// [`Try::new`]. `next` writes the next plan into a lane, and returns its length, or `None` without
+/// another one. `take` gets a plan that is done: how many plans began before it, its lane, its
+/// knots, its cost, and the state after it. It returns whether to go on. No cost is finite if the
+/// numbers overflow.
 #[inline(never)]
-pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
+pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>, const LANES: usize>(
     machine: Machine<'_, A>,
-    level: SimdLevel,
+    tries: &mut [Try<A::Scalar>; LANES],
     start: State<A::Scalar>,
     iterations: u32,
     knots: &mut [Knot<V>],
@@ -64,18 +65,6 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
 ) {
     let number = A::Scalar::from_f64;
     let [zero, one] = [A::Scalar::ZERO, A::Scalar::ONE];
-    let new = Try {
-        phase: Phase::Idle,
-        index: 0,
-        cost: zero,
-        damping: number(DAMPING),
-        part: zero,
-        quarters: 0,
-        iterations: 0,
-        stalled: 0,
-    };
-    let mut tries = V::each(new);
-    let tries: &mut [Try<A::Scalar>] = tries.as_mut();
     let y: [A::Scalar; 4] = start.into();
     let [sines1, sines2] = sin_cos::<A>([y[0], y[1]]);
     let splat2 = |(sin, cos)| (V::splat(sin), V::splat(cos));
@@ -95,7 +84,7 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
                 && let Some(len) = next(knots, i)
             {
                 orders.len.set_lane(i, number(len as f64));
-                *plan = Try { phase: Phase::Keeps, index: begun, ..new };
+                *plan = Try { phase: Phase::Keeps, index: begun, ..Try::new() };
                 begun += 1;
             }
             active += usize::from(plan.phase != Phase::Idle);
@@ -112,7 +101,7 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
         let Some((knots, _)) = knots.split_at_mut_checked(longest.unwrap_or(0)) else { return };
 
         let mut motion = first;
-        level.run(Forward { machine, knots, orders: &orders, motion: &mut motion });
+        machine.level.run(Forward { machine, knots, orders: &orders, motion: &mut motion });
         let mut waiting = 0;
         for (i, plan) in tries.iter_mut().enumerate() {
             let cost = motion.cost.lane(i);
@@ -163,7 +152,7 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
         let mut least = damping;
         let backward =
             Backward { machine, knots, len: orders.len, ends: &ends, damping, least: &mut least };
-        level.run(backward);
+        machine.level.run(backward);
         for (i, plan) in tries.iter_mut().enumerate() {
             if plan.phase == Phase::Waits {
                 match least.lane(i) >= number(LEAST) {
@@ -176,6 +165,19 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>>(
 }
 
 impl<S: Real> Try<S> {
+    pub(super) fn new() -> Self {
+        Self {
+            phase: Phase::Idle,
+            index: 0,
+            cost: S::ZERO,
+            damping: S::from_f64(DAMPING),
+            part: S::ZERO,
+            quarters: 0,
+            iterations: 0,
+            stalled: 0,
+        }
+    }
+
     /// No part of the change lowers the cost.
     fn fail(&mut self) {
         self.phase = Phase::Waits;

@@ -31,14 +31,6 @@ pub trait Numbers<S: Real>:
     #[doc(hidden)]
     const LEN: usize;
 
-    /// A value for each lane.
-    #[doc(hidden)]
-    type Each<T: Copy + fmt::Debug>: AsMut<[T]>;
-
-    /// `x` for each lane.
-    #[doc(hidden)]
-    fn each<T: Copy + fmt::Debug>(x: T) -> Self::Each<T>;
-
     /// The number of lane `i`, which must be below `LEN`.
     ///
     /// A loop over the lanes around code for one number vectorizes however long that code is. Of
@@ -102,14 +94,8 @@ pub trait Numbers<S: Real>:
 impl<S: Real> Numbers<S> for S {
     type Mask = bool;
     type Single = f32;
-    type Each<T: Copy + fmt::Debug> = [T; 1];
     const IS_ONE: bool = true;
     const LEN: usize = 1;
-
-    #[inline(always)]
-    fn each<T: Copy + fmt::Debug>(x: T) -> [T; 1] {
-        [x]
-    }
 
     #[inline(always)]
     fn lane(&self, _: usize) -> S {
@@ -191,14 +177,8 @@ impl<S: Real, const N: usize> Neg for Lanes<S, N> {
 impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     type Mask = [bool; N];
     type Single = Lanes<f32, N>;
-    type Each<T: Copy + fmt::Debug> = [T; N];
     const IS_ONE: bool = false;
     const LEN: usize = N;
-
-    #[inline(always)]
-    fn each<T: Copy + fmt::Debug>(x: T) -> [T; N] {
-        [x; N]
-    }
 
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "the callers' loops end below N")]

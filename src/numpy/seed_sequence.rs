@@ -162,22 +162,16 @@ impl std::str::FromStr for SeedSequence {
     ///
     /// # Errors
     ///
-    /// [`Error::SeedTooLong`], and [`Error::MalformedSeed`] with the first character that is not a
-    /// digit.
+    /// [`Error::MalformedSeed`].
     fn from_str(text: &str) -> Result<Self, Error> {
-        // The time is quadratic in the length.
-        let (len, limit) = (text.len(), 4300);
-        if len > limit {
-            return Err(Error::SeedTooLong { len, limit });
-        }
-        let malformed = |found, position| Err(Error::MalformedSeed { found, position });
         if text.is_empty() {
-            return malformed(None, 1);
+            return Err(Error::MalformedSeed { found: None, position: 1 });
         }
         let mut words = std::vec::Vec::new();
         for (found, position) in text.chars().zip(1..) {
-            let Some(digit) = found.to_digit(10) else {
-                return malformed(Some(found), position);
+            // The time is quadratic in the length.
+            let Some(digit) = found.to_digit(10).filter(|_| position <= 4300) else {
+                return Err(Error::MalformedSeed { found: Some(found), position });
             };
             let mut carry = u64::from(digit);
             for word in &mut words {

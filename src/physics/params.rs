@@ -165,13 +165,6 @@ impl<S: Real> Params<S> {
         self.rotor = self.rotor + more * gear * inertia;
         self
     }
-
-    /// Whether all bits are the same. `==` takes −0 for 0.
-    pub(crate) fn same(&self, other: &Self) -> bool {
-        let [bits, other_bits] =
-            [self, other].map(|params| params.numbers().map(|(_, x)| x.to_f64().to_bits()));
-        self.dynamics == other.dynamics && bits == other_bits
-    }
 }
 
 /// The name, unit and range of each number.

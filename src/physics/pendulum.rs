@@ -208,7 +208,7 @@ impl<A: Arithmetic> Pendulum<A> {
     pub fn energy(&self) -> A::Scalar {
         let [_, _, dtheta1, dtheta2] = self.y;
         let sin_cos = self.sin_cos();
-        let [[m11, m12], [_, m22]] = self.mass_matrix_for(sin_cos[1].1);
+        let [[m11, m12], [_, m22]] = self.mass_matrix();
         let momentum1 = m11 * dtheta1 + m12 * dtheta2;
         let momentum2 = m12 * dtheta1 + m22 * dtheta2;
         let kinetic = A::Scalar::from_f64(0.5) * (momentum1 * dtheta1 + momentum2 * dtheta2);
@@ -222,10 +222,6 @@ impl<A: Arithmetic> Pendulum<A> {
     #[must_use]
     pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
         let [_, (_, cos2)] = self.sin_cos();
-        self.mass_matrix_for(cos2)
-    }
-
-    fn mass_matrix_for(&self, cos2: A::Scalar) -> [[A::Scalar; 2]; 2] {
         let Model { params, constants } = &self.model;
         let (l1, lc1) = (params.length1, params.center_of_mass1);
         let upper = params.mass1 * (lc1 * lc1) + params.inertia1 + params.mass2 * (l1 * l1);

@@ -10,7 +10,6 @@ use embedded_graphics_core::geometry::{OriginDimensions, Point, Size};
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
 use super::{Figure, Theme};
-use crate::error::Error;
 
 /// A picture of RGB bytes: Gymnasium's `rgb_array`, and an embedded-graphics target.
 ///
@@ -48,25 +47,14 @@ impl Frame {
         frame
     }
 
-    /// A black frame of this size in pixels.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] for a frame that does not fit into memory.
-    pub fn new(width: u32, height: u32) -> Result<Self, Error> {
-        let pixels = (width as usize).saturating_mul(height as usize);
-        let len = pixels.saturating_mul(3);
+    /// A black frame of this size in pixels. `None` if it does not fit into memory.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Option<Self> {
+        let len = (width as usize).checked_mul(height as usize)?.checked_mul(3)?;
         let mut bytes = Vec::new();
-        if bytes.try_reserve_exact(len).is_err() {
-            return Err(Error::OutOfRange {
-                name: "width × height",
-                value: f64::from(width) * f64::from(height),
-                unit: "pixels",
-                rule: "small enough for the memory, in",
-            });
-        }
+        bytes.try_reserve_exact(len).ok()?;
         bytes.resize(len, 0);
-        Ok(Self { width, height, bytes })
+        Some(Self { width, height, bytes })
     }
 
     /// As [`new`](Self::new), for a size that is known to be small.
@@ -122,27 +110,30 @@ impl DrawTarget for Frame {
     }
 }
 
-/// The figure in 20 lines of 40 braille characters, each of 2 × 4 dots.
-pub(crate) fn text(figure: &Figure) -> String {
-    const COLUMNS: usize = 40;
-    const LINES: usize = 20;
-    /// The bit of each dot in a code point, by row and column within a character.
-    const BITS: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+impl Figure {
+    /// The figure in 20 lines of 40 braille characters, each of 2 × 4 dots.
+    #[must_use]
+    pub fn braille(&self) -> String {
+        const COLUMNS: usize = 40;
+        const LINES: usize = 20;
+        /// The bit of each dot in a code point, by row and column within a character.
+        const BITS: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
-    let mut frame = Frame::black(2 * COLUMNS as u32, 4 * LINES as u32);
-    let Ok(()) = figure.draw(&mut frame, &Theme::MONOCHROME.map(Rgb888::from));
-    let is_on = |x, y| frame.bytes.get(3 * (2 * COLUMNS * y + x)) == Some(&255);
-    let character = |line, column| {
-        let mut dots = 0;
-        for (y, row) in (4 * line..).zip(BITS) {
-            for (x, bit) in (2 * column..).zip(row) {
-                if is_on(x, y) {
-                    dots |= bit;
+        let mut frame = Frame::black(2 * COLUMNS as u32, 4 * LINES as u32);
+        let Ok(()) = self.draw(&mut frame, &Theme::MONOCHROME.map(Rgb888::from));
+        let is_on = |x, y| frame.bytes.get(3 * (2 * COLUMNS * y + x)) == Some(&255);
+        let character = |line, column| {
+            let mut dots = 0;
+            for (y, row) in (4 * line..).zip(BITS) {
+                for (x, bit) in (2 * column..).zip(row) {
+                    if is_on(x, y) {
+                        dots |= bit;
+                    }
                 }
             }
-        }
-        char::from_u32(0x2800 + dots)
-    };
-    let line = |line| (0..COLUMNS).filter_map(|column| character(line, column)).collect();
-    core::array::from_fn::<String, LINES, _>(line).join("\n")
+            char::from_u32(0x2800 + dots)
+        };
+        let line = |line| (0..COLUMNS).filter_map(|column| character(line, column)).collect();
+        core::array::from_fn::<String, LINES, _>(line).join("\n")
+    }
 }

@@ -210,18 +210,11 @@ impl<S: Modeled> Draws<S> {
         // Then no draw between them takes more of the coupling than the inertias allow.
         let [most, other] = [high.rotor, low.rotor].map(S::abs);
         let most = if most > other { most } else { other };
-        if !low.same(&high) && most * most > low.inertia1 * low.inertia2 {
+        if low != high && most * most > low.inertia1 * low.inertia2 {
             let rule = "at most the root of inertia1 times inertia2 where one is drawn, in";
             let value = most.to_f64();
             return Err(Error::OutOfRange { name: "rotor", value, unit: "kg m²", rule });
         }
         Ok(())
-    }
-}
-
-impl<S: Real> Default for Draws<S> {
-    /// [`Draws::NONE`].
-    fn default() -> Self {
-        Self::NONE
     }
 }

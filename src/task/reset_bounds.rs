@@ -73,9 +73,3 @@ impl ResetBounds {
         self.high
     }
 }
-
-impl Default for ResetBounds {
-    fn default() -> Self {
-        Self::DEFAULT
-    }
-}

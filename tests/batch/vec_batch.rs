@@ -3,7 +3,7 @@
 use acrobot::batch::{Batch, VecBatch};
 use acrobot::numpy::SeedSequence;
 use acrobot::task::{Draw, Draws};
-use acrobot::{Acrobot, Error, Fast, Params};
+use acrobot::{Acrobot, Fast, Params};
 
 /// `DerefMut` gives access to the batch inside, so a batch of another length can replace it.
 #[test]
@@ -25,24 +25,6 @@ fn a_batch_that_does_not_fit_into_memory_is_rejected() {
     let len = usize::MAX / 2;
     let error = VecBatch::<Fast>::new(SeedSequence::new(0), len).unwrap_err().to_string();
     assert_eq!(error, format!("a batch must fit into memory, got {len} acrobots"));
-}
-
-/// Where all share their parameters, a member's must have the same bits.
-#[test]
-fn a_member_with_another_zero_than_all_share_is_rejected() {
-    let with_gravity = |gravity| {
-        let mut batch = VecBatch::<Fast>::new(SeedSequence::new(3), 2).unwrap();
-        let params = Params { gravity, ..Params::DEFAULT };
-        batch.set_params(params).unwrap();
-        batch
-    };
-    for gravity in [0.0, -0.0] {
-        let mut batch = with_gravity(gravity);
-        let own = batch.member(0).unwrap();
-        batch.set_member(1, own).unwrap();
-        let other = with_gravity(-gravity).member(0).unwrap();
-        assert_eq!(batch.set_member(1, other), Err(Error::SharedParams));
-    }
 }
 
 /// The packages for C, Python and JavaScript compare with the same file.

@@ -216,7 +216,7 @@ fn no_velocity_of_a_plan_reaches_its_bound() -> Result<(), Box<dyn Error>> {
     let cost = Cost::new(&params);
     let [first, second] = fastest(Planner::with_cost(params, 12.0, cost)?)?;
     assert!(first < 5.0 && second < 9.0, "{first} {second}");
-    let [first, second] = fastest(Planner::for_simulation(params, 12.0, cost)?)?;
+    let [first, second] = fastest(Planner::with_cost(params, 12.0, cost)?.for_simulation())?;
     assert!(first == 5.0 || second == 9.0, "{first} {second}");
     Ok(())
 }

@@ -11,11 +11,8 @@
 // - Arrays have `count` elements, in a batch one for each acrobot; `index` and `step` count from 0.
 // - Numbers are in SI units.
 
-
 #ifndef ACROBOT_H
 #define ACROBOT_H
-
-// Generated from bindings/c/src by `make header`. Do not edit.
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -37,6 +34,7 @@
 #define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * (48 + 64))
 #endif
 
+// Of the rest, CI compares all but the comments with the library's source, by cbindgen.
 
 // Action 0: −1 N m by default.
 #define ACROBOT_ACTION_NEGATIVE 0

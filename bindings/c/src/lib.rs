@@ -1,10 +1,11 @@
-//! The functions of `include/acrobot.h`, which cbindgen writes from these files.
+//! The functions of `include/acrobot.h`, which says what they do. CI compares its declarations with
+//! those that cbindgen writes from these files.
 //!
-//! Names are those of the header. All `unsafe` is here: the crate sees only valid references.
+//! All `unsafe` is here: the crate sees only valid references.
 
 #![no_std]
 #![expect(non_camel_case_types, reason = "the names of the header")]
-#![expect(clippy::missing_safety_doc, reason = "the header states it once, in cbindgen.toml")]
+#![expect(clippy::missing_safety_doc, reason = "the header states it once")]
 #![expect(
     unsafe_op_in_unsafe_fn,
     reason = "each function of the header is unsafe as a whole: it gets pointers"

@@ -1,14 +1,10 @@
-// One acrobot.
+// One acrobot: in the module, a batch of one.
 
-import { draw } from "./draw.js";
 import {
-  ACTION, Environment, TASKS, addressOf, allocated, call, indexOf, isAction, isFinite32, orFree,
-  readState, setState, writeSeed,
-} from "./kept.js";
-import { load, save } from "./snapshot.js";
-import {
-  checked, integers, invalid, invalidSingle, numbers, positive, randomSeed, wasm,
-} from "./wasm.js";
+  ACTION, Environment, TASKS, drawOne, isAction, load, readState, setState,
+} from "./environment.js";
+import { addressOf, call, isFinite32, writeSeed } from "./kept.js";
+import { integers, invalid, invalidSingle, numbers, wasm } from "./wasm.js";
 
 /** A loop, because `slice` takes half as long again. */
 function observation() {
@@ -24,49 +20,29 @@ function results(flags) {
 }
 
 export class Acrobot extends Environment {
-  /** The action or the torque of the last step, for its picture. */
-  #action = 1;
-  #torque;
-
   constructor(options = {}) {
-    const given = checked("options", options, ["seed", "params", "maxSteps", "task", "draws"]);
-    const { seed = randomSeed(), params = {}, maxSteps, task = TASKS[0], draws = {} } = given;
-    const index = indexOf("task", TASKS, task);
-    const limit = maxSteps === undefined ? 0 : positive("maxSteps", maxSteps);
-    super("acrobot", allocated("acrobots", 1, wasm().acrobot_new(limit, index)));
-    orFree(this, () => {
-      this.setParams(params);
-      this.setDraws(draws);
-      this.reset(seed);
-      this.sample(randomSeed());
-    });
+    super("acrobot", options, { count: 1, autoreset: "Disabled", ownParams: true });
   }
 
   static restore(snapshot) {
     const acrobot = new this();
-    orFree(acrobot, () => load(acrobot, snapshot, true));
+    load(acrobot, snapshot);
     return acrobot;
   }
 
   reset(seed) {
     call(this, "reset", writeSeed(seed));
-    [this.#action, this.#torque] = [1];
     return observation();
   }
 
   step(action) {
     if (!isAction(action)) throw invalid(`action ${ACTION}`, action);
-    const flags = wasm().acrobot_step(addressOf(this), action);
-    this.#action = action;
-    this.#torque = undefined;
-    return results(flags);
+    return results(wasm().step_action(addressOf(this), action));
   }
 
   stepTorque(torque) {
     if (!isFinite32(torque)) throw invalidSingle("torque must be a finite number of N m", torque);
-    const flags = wasm().acrobot_step_torque(addressOf(this), torque);
-    this.#torque = torque;
-    return results(flags);
+    return results(wasm().step_torque(addressOf(this), torque));
   }
 
   sample(seed) {
@@ -74,56 +50,44 @@ export class Acrobot extends Environment {
   }
 
   get observation() {
-    wasm().acrobot_observe(addressOf(this));
+    call(this, "observe");
     return observation();
   }
 
   get state() {
-    call(this, "read");
-    return readState();
+    return readState(this, 0);
   }
 
   set state(state) {
-    setState(this, state);
+    setState(this, state, 0);
   }
 
   get energy() {
-    call(this, "read");
+    call(this, "read_one", 0);
     return numbers()[4];
   }
 
   get tipHeight() {
-    call(this, "read");
+    call(this, "read_one", 0);
     return numbers()[5];
   }
 
   get elapsedSteps() {
-    call(this, "read");
-    return integers()[6];
-  }
-
-  get maxSteps() {
-    call(this, "read");
+    call(this, "read_one", 0);
     return integers()[7];
   }
 
+  get maxSteps() {
+    call(this, "settings");
+    return integers()[1];
+  }
+
   get task() {
-    call(this, "read");
-    return TASKS[integers()[8]];
-  }
-
-  snapshot() {
-    return save(this);
-  }
-
-  restore(snapshot) {
-    load(this, snapshot, false);
-    [this.#action, this.#torque] = [1];
+    call(this, "settings");
+    return TASKS[integers()[4]];
   }
 
   draw(context, options) {
-    const { params, state } = this;
-    const torque = this.#torque ?? params.torques[this.#action];
-    draw(context, state, params, torque, options);
+    drawOne(this, 0, context, options);
   }
 }

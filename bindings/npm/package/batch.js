@@ -1,14 +1,11 @@
 // Many acrobots.
 
-import { draw } from "./draw.js";
 import {
-  ACTION, Environment, TASKS, addressOf, allocated, call, changeParams, elements, indexOf, isAction,
-  isFinite32, orFree, readParams, readState, setState, writeSeed,
-} from "./kept.js";
-import { load, save } from "./snapshot.js";
-import {
-  checked, integers, invalid, numbers, positive, randomSeed, wasm,
-} from "./wasm.js";
+  ACTION, AUTORESETS, Environment, TASKS, changeParams, drawOne, isAction, load, readParams,
+  readState, setState,
+} from "./environment.js";
+import { addressOf, call, elements, isFinite32, writeSeed } from "./kept.js";
+import { integers, invalid, numbers, wasm } from "./wasm.js";
 
 /**
  * The results, and what JavaScript writes, in the order of the module's addresses: type, and number
@@ -25,7 +22,6 @@ const ARRAYS = {
   mask: [Uint8Array, 1],
   torques: [Float32Array, 1],
 };
-const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
 export class Batch extends Environment {
   #settings;
@@ -39,34 +35,14 @@ export class Batch extends Environment {
   #stale = false;
 
   constructor(options) {
-    const names = ["count", "seed", "params", "maxSteps", "autoreset", "ownParams", "task"];
-    const given = checked("options", options, [...names, "draws"]);
-    const { count, seed = randomSeed(), params = {}, maxSteps, draws } = given;
-    const { autoreset = AUTORESETS[0], ownParams = draws !== undefined, task = TASKS[0] } = given;
-    const index = indexOf("task", TASKS, task);
-    positive("count", count);
-    const limit = maxSteps === undefined ? 0 : positive("maxSteps", maxSteps);
-    const mode = indexOf("autoreset", AUTORESETS, autoreset);
-    if (typeof ownParams !== "boolean") {
-      throw invalid("ownParams must be true or false", ownParams, []);
-    }
-    const address = wasm().batch_new(count, limit, mode, ownParams, index);
-    super("batch", allocated("acrobots", count, address));
-    orFree(this, () => {
-      this.setParams(params);
-      if (draws !== undefined) this.setDraws(draws);
-      this.#open();
-      this.reset(seed);
-      this.sample(randomSeed());
-    });
+    super("batch", options, {}, ["count", "autoreset", "ownParams"]);
+    this.#open();
   }
 
   static restore(snapshot) {
     const batch = new this({ count: 1 });
-    orFree(batch, () => {
-      load(batch, snapshot);
-      batch.#open();
-    });
+    load(batch, snapshot);
+    batch.#open();
     return batch;
   }
 
@@ -76,12 +52,11 @@ export class Batch extends Environment {
     const [count, maxSteps, mode, own, task] = integers();
     const [autoreset, ownParams] = [AUTORESETS[mode], own === 1];
     this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams, task: TASKS[task] });
-    call(this, "arrays");
-    this.#addresses = integers().slice(0, 9);
+    this.#addresses = integers().slice(5, 14);
     this.#views = {};
     this.#results = {};
-    this.#copyResults();
     this.#observe();
+    this.#copyResults();
   }
 
   /** The view of an array. */
@@ -144,8 +119,9 @@ export class Batch extends Environment {
     const words = writeSeed(seed);
     const address = addressOf(this);
     this.#view("mask").set(flags);
-    wasm().batch_reset(address, words);
-    this.#observe();
+    wasm().reset(address, words);
+    this.#copy("observations");
+    this.#stale = false;
     return this.#results.observations;
   }
 
@@ -171,7 +147,7 @@ export class Batch extends Environment {
     const address = addressOf(this);
     const written = this.#view(what);
     written.set(inputs);
-    if (!wasm().batch_step(address, what === "torques")) {
+    if (!wasm().step(address, what === "torques")) {
       const index = written.findIndex((each) => !isValid(each));
       throw invalid(`${what}[${index}] ${rule}`, written[index]);
     }
@@ -181,8 +157,7 @@ export class Batch extends Environment {
 
   stateOf(index) {
     this.#checkIndex(index);
-    call(this, "state", index);
-    return readState();
+    return readState(this, index);
   }
 
   setStateOf(index, state) {
@@ -194,7 +169,7 @@ export class Batch extends Environment {
   get states() {
     const states = new Float32Array(4 * this.count);
     for (let i = 0; i < this.count; i++) {
-      call(this, "state", i);
+      call(this, "read_one", i);
       states.set(numbers().subarray(0, 4), 4 * i);
     }
     return states;
@@ -212,7 +187,8 @@ export class Batch extends Environment {
 
   elapsedStepsOf(index) {
     this.#checkIndex(index);
-    return call(this, "elapsed_steps", index) >>> 0;
+    call(this, "read_one", index);
+    return integers()[7];
   }
 
   paramsOf(index) {
@@ -225,11 +201,8 @@ export class Batch extends Environment {
     changeParams(this, changes, index);
   }
 
-  snapshot() {
-    return save(this);
-  }
-
   draw(context, index, options) {
-    draw(context, this.stateOf(index), this.paramsOf(index), 0, options);
+    this.#checkIndex(index);
+    drawOne(this, index, context, options);
   }
 }

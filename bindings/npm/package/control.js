@@ -16,7 +16,7 @@ const COST = [
   "below", "height", "margin", "arrival",
 ];
 /** The first words of a regulator's weights and of a state. */
-const [WEIGHTS, STATE_WORD] = [20, 64];
+const [WEIGHTS, STATE_WORD] = [19, 64];
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
 
 /** Rust's messages, by the kind of error less 4. */
@@ -43,22 +43,6 @@ function acceptAll(kind, given) {
   throw new RangeError(MESSAGES[kind - 4](value, camelCase(text(1)), other));
 }
 
-const row = (what, array) => elements(what, array, 4, isNumber, "must be a number");
-
-const matrix = (what, rows) =>
-  elements(what, rows, 4, () => true).flatMap((each, i) => row(`${what}[${i}]`, each));
-
-function weights(q, r) {
-  checkNumber("r", r);
-  return [...matrix("q", q), r];
-}
-
-/** The matrix and the vector that the module has written. */
-const results = () => [
-  [0, 4, 8, 12].map((from) => numbers().slice(from, from + 4)),
-  numbers().slice(16, 20),
-];
-
 /** Writes a state. It comes after all other arguments, because reading these can run code. */
 function writeState(state) {
   const given = checkedState(state);
@@ -66,56 +50,24 @@ function writeState(state) {
   return given;
 }
 
-/** Calls a function of the module for a pendulum. The last of the weights is R. */
-function compute(name, state, torque, params, flag, weights = []) {
+export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
   const names = parameters();
   const given = readSlots("params", params, names);
+  const weights = elements("q", q, 4, () => true).flatMap((row, i) =>
+    elements(`q[${i}]`, row, 4, isNumber, "must be a number"),
+  );
+  checkNumber("r", r);
   checkNumber("torque", torque);
   const at = writeState(state);
   const mask = writeSlots(given, names);
-  numbers().set(weights, WEIGHTS);
-  acceptAll(wasm()[name](mask, torque, flag), { ...given, ...at, torque, r: weights.at(-1) });
-  return results();
-}
-
-export function linearize(state, torque, params) {
-  const [a, b] = compute("linear_model", state, torque, params, false);
-  return { a, b };
-}
-
-export function linearizeStep(state, torque, params) {
-  const [a, b] = compute("linear_model", state, torque, params, true);
-  return { a, b };
-}
-
-export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
-  const [costToGo, gain] = compute("regulator", state, torque, params, false, weights(q, r));
-  return { gain, costToGo };
-}
-
-export function lqr(model, q, r) {
-  const words = [...matrix("a", model?.a), ...row("b", model?.b), ...weights(q, r)];
-  numbers().set(words);
-  acceptAll(wasm().regulator(0, 0, true), { r });
-  const [costToGo, gain] = results();
-  return { gain, costToGo };
-}
-
-function lengthOf(plan) {
-  const length = plan?.torques?.length;
-  if (length === undefined) throw invalid("plan must be one that a planner returns", plan, []);
-  return length;
+  numbers().set([...weights, r], WEIGHTS);
+  acceptAll(wasm().regulator(mask, torque), { ...given, ...at, torque, r });
+  const [a, b, c, d, gain] = [0, 4, 8, 12, 16].map((from) => numbers().slice(from, from + 4));
+  return { gain, costToGo: [a, b, c, d] };
 }
 
 /** The arrays of a plan, with their elements for a step: a row in the module. */
 const PLAN = { states: 4, torques: 1, gains: 4 };
-
-function rowOf(plan, step) {
-  const row = Object.entries(PLAN).flatMap(([name, size]) =>
-    Array.from({ length: size }, (_, i) => plan[name]?.[size * step + i]),
-  );
-  return elements(`plan[${step}]`, row, 9, isFinite32, "must be a finite number");
-}
 
 export class Planner extends Kept {
   constructor(params, limit, cost = {}) {
@@ -124,23 +76,8 @@ export class Planner extends Kept {
     const what = "the largest torque";
     checkNumber(what, limit);
     const mask = writeSlots(given, [...names, ...COST]);
-    acceptAll(wasm().planner_new(mask, limit), { ...given, [what]: limit });
+    acceptAll(wasm().make(mask, limit), { ...given, [what]: limit });
     super("planner", allocated("planners", 1, integers()[0]));
-  }
-
-  #resize(steps) {
-    allocated("steps", steps, call(this, "resize", steps));
-  }
-
-  /** Copies the module's plan to the arrays of one. */
-  #read(plan, steps) {
-    for (let step = 0; step < steps; step++) {
-      call(this, "read", step);
-      let from = 0;
-      for (const [name, size] of Object.entries(PLAN)) {
-        for (let i = 0; i < size; i++) plan[name][size * step + i] = numbers()[from++];
-      }
-    }
   }
 
   plan(start, options) {
@@ -149,40 +86,38 @@ export class Planner extends Kept {
     positive("tries", tries);
     positive("steps", steps);
     const state = writeState(start);
-    this.#resize(steps);
+    allocated("steps", steps, call(this, "resize", steps));
     const kind = call(this, "plan", writeSeed(seed), tries);
     if (kind === NOT_FOUND) return null;
     acceptAll(kind, state);
     const [length] = integers();
-    const [states, gains] = [4, 4].map((size) => new Float32Array(size * length));
-    const plan = { states, torques: new Float32Array(length), gains };
-    this.#read(plan, length);
+    const plan = {};
+    for (const [name, size] of Object.entries(PLAN)) plan[name] = new Float32Array(size * length);
+    for (let step = 0; step < length; step++) {
+      call(this, "read_knot", step);
+      let from = 0;
+      for (const [name, size] of Object.entries(PLAN)) {
+        plan[name].set(numbers().subarray(from, from + size), size * step);
+        from += size;
+      }
+    }
     return plan;
-  }
-
-  improve(start, iterations, plan) {
-    positive("iterations", iterations);
-    const rows = Array.from({ length: lengthOf(plan) }, (_, step) => rowOf(plan, step));
-    const state = writeState(start);
-    this.#resize(rows.length);
-    rows.forEach((row, step) => {
-      numbers().set(row);
-      call(this, "set", step);
-    });
-    acceptAll(call(this, "improve", iterations), state);
-    const [cost] = numbers();
-    this.#read(plan, rows.length);
-    return cost;
   }
 
   follow(plan, step, state) {
     if (!Number.isInteger(step) || step < 0) {
       throw invalid("step must be an integer of at least 0", step);
     }
-    const isPlanned = step < lengthOf(plan);
-    const row = isPlanned ? rowOf(plan, step) : [];
+    const length = plan?.torques?.length;
+    if (length === undefined) throw invalid("plan must be one that a planner returns", plan, []);
+    const isPlanned = step < length;
+    const row = Object.entries(PLAN).flatMap(([name, size]) =>
+      Array.from({ length: isPlanned ? size : 0 }, (_, i) => plan[name]?.[size * step + i]),
+    );
+    const rule = "must be a finite number";
+    const knot = elements(`plan[${step}]`, row, isPlanned ? 9 : 0, isFinite32, rule);
     writeState(state);
-    numbers().set(row);
+    numbers().set(knot);
     return call(this, "follow", isPlanned);
   }
 

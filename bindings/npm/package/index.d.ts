@@ -93,12 +93,9 @@ export type Draws = {
 } & { readonly torques?: readonly [Draw, Draw, Draw] };
 
 /**
- * Gymnasium's task, or one that no state ends, with a reward from 0 to 1 and other parameters.
- *
- * "swingup" is dm_control's `acrobot-swingup`: from rest anywhere to upright, with 1000 steps and
- * other observations, the sines of both links' angles from upright, their cosines, and the
- * velocities. "balance" is to stay upright: 500 steps, with the reward
- * (2 − cos θ1 − cos(θ1 + θ2)) / 4 and a motor of 10 N m.
+ * Gymnasium's task, or one that no state ends, with rewards from 0 to 1 and other parameters:
+ * "swingup", dm_control's `acrobot-swingup`, from rest anywhere to upright in 1000 steps, or
+ * "balance", to stay upright for 500, with the reward (2 − cos θ1 − cos(θ1 + θ2)) / 4.
  */
 export type Task = "acrobot" | "swingup" | "balance";
 
@@ -118,7 +115,7 @@ export interface Options {
 export interface Step {
   /**
    * A new array: [cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2], velocities in rad/s. In a swing-up the
-   * first four are dm_control's `orientations`.
+   * first four are the sines of both links' angles from upright, then their cosines.
    */
   observation: Float32Array;
   /** −1, or 0 if `terminated`. In other tasks from 0 to 1. */
@@ -132,20 +129,7 @@ export interface Step {
 /** A 2D context of a canvas or an `OffscreenCanvas`, or that of a package for Node.js. */
 export interface Context {
   readonly canvas: { readonly width: number; readonly height: number };
-  fillStyle: unknown;
-  strokeStyle: unknown;
-  lineWidth: number;
-  save(): void;
-  restore(): void;
-  translate(x: number, y: number): void;
-  scale(x: number, y: number): void;
-  clearRect(x: number, y: number, width: number, height: number): void;
-  fillRect(x: number, y: number, width: number, height: number): void;
-  beginPath(): void;
-  lineTo(x: number, y: number): void;
   arc(x: number, y: number, radius: number, startAngle: number, endAngle: number): void;
-  stroke(): void;
-  fill(): void;
 }
 
 export interface DrawOptions {
@@ -176,7 +160,10 @@ declare abstract class Kept {
 /** One acrobot. Invalid arguments throw a `RangeError` or `TypeError`, and change nothing. */
 export class Acrobot extends Kept {
   constructor(options?: Options);
-  /** A new acrobot that continues from a snapshot with the same bits. */
+  /**
+   * A new acrobot that continues from a snapshot with the same bits, and draws no parameters until
+   * `setDraws`. Throws if the snapshot is damaged or of another version.
+   */
   static restore(snapshot: Uint8Array): Acrobot;
   /** Begins an episode, without a seed from the next random numbers. Returns the observation. */
   reset(seed?: Seed): Float32Array;
@@ -184,20 +171,14 @@ export class Acrobot extends Kept {
   step(action: Action): Step;
   /** As `step`, with any finite torque, N m. */
   stepTorque(torque: number): Step;
-  /**
-   * A random action. Its random numbers are not those of `reset`: a seed begins them, as
-   * Gymnasium's `action_space.seed`. Without any seed they are random.
-   */
+  /** A random action, from other random numbers than `reset`: Gymnasium's `action_space`. */
   sample(seed?: Seed): Action;
   get task(): Task;
   get observation(): Float32Array;
   /** The state: a frozen copy. Setting it, to finite numbers, continues the episode. */
   get state(): Readonly<State>;
   set state(state: Readonly<State>);
-  /**
-   * The total energy, J. The potential energy is 0 at the height of the fixed joint. Extreme
-   * velocities or parameters can make it infinite or NaN.
-   */
+  /** The total energy, J; 0 at rest at the height of the fixed joint. Can be infinite or NaN. */
   get energy(): number;
   /** The height of the tip above the fixed joint, m. */
   get tipHeight(): number;
@@ -206,11 +187,6 @@ export class Acrobot extends Kept {
   get maxSteps(): number;
   /** About 160 bytes, without draws: Rust's `TimeLimit<Acrobot<Fast>>` in postcard with CRC-32. */
   snapshot(): Uint8Array;
-  /**
-   * Continues from a snapshot, and draws no parameters until `setDraws`. Throws if it is damaged or
-   * of another version or task.
-   */
-  restore(snapshot: Uint8Array): void;
   /** Draws the acrobot, with an arrow for the torque of the last step. */
   draw(context: Context, options?: DrawOptions): void;
 }
@@ -287,7 +263,7 @@ export class Batch extends Kept {
    * `VecBatch<Fast>` in postcard with CRC-32.
    */
   snapshot(): Uint8Array;
-  /** Draws an acrobot, without an arrow. */
+  /** As `Acrobot.draw`. */
   draw(context: Context, index: number, options?: DrawOptions): void;
 }
 

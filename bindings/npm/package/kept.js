@@ -1,17 +1,11 @@
-// What acrobots and batches share: the checks of their arguments, and what the module keeps.
+// What the modules share: what they keep in their memory, and checks of arguments.
 
 import {
   Opaque, camelCase, checked, integers, invalid, invalidSingle, numbers, seedWords, text, wasm,
 } from "./wasm.js";
 
 export const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
-const DYNAMICS = ["book", "nips"];
-/** The kinds of draws in the order of the module, with the count of their numbers. */
-const DRAWS = { fixed: 0, asBefore: 0, uniform: 2, logUniform: 2, normal: 4 };
-export const TASKS = ["acrobot", "swingup", "balance"];
-export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
-
-export const isAction = (action) => action === 0 || action === 1 || action === 2;
+export const DYNAMICS = ["book", "nips"];
 
 export const isNumber = (value) => typeof value === "number";
 
@@ -87,19 +81,6 @@ export function writeSlots(given, slots) {
   return mask;
 }
 
-/** A draw as the module reads it: the index of its kind, and its numbers. */
-function readDraw(name, draw) {
-  const object = Array.isArray(draw) ? { uniform: draw } : draw;
-  const given = typeof draw === "string" ? [[draw, []]] : Object.entries(object ?? {});
-  const [[kind, array] = []] = given;
-  const index = Object.keys(DRAWS).indexOf(kind);
-  if (index < 0 || given.length > 1) {
-    const forms = "[low, high], { logUniform: [low, high] }, { normal: [mean, std, low, high] }";
-    throw invalid(`${name} must be drawn by ${forms}, "asBefore" or "fixed"`, draw, []);
-  }
-  return [index, ...elements(name, array, DRAWS[kind], isNumber, "must be a number")];
-}
-
 /**
  * Throws if the module has rejected numbers. `given` has those of the caller by their names, as
  * numbers or in arrays.
@@ -111,7 +92,7 @@ export function accept(kind, given) {
   const [value] = numbers();
   const name = camelCase(text(1));
   const friction = '0 in the task "acrobot", in N m s/rad';
-  const rule = kind === 2 ? friction : `${text(3)} ${text(5)}`;
+  const rule = text(3).startsWith("0 unless") ? friction : `${text(3)} ${text(5)}`;
   // What the caller gave, before it was rounded.
   const all = [given[name], given[`${name}[0]`], given[`${name}[1]`]].flat();
   const own = all.find((number) => Object.is(Math.fround(number), value));
@@ -119,7 +100,7 @@ export function accept(kind, given) {
 }
 
 /** Frees what the program has forgotten to free, if the engine says when. */
-const free = ({ kind, address }) => wasm()[`${kind}_free`](address);
+const free = (address) => wasm().kept_free(address);
 const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(free);
 
 /**
@@ -145,20 +126,20 @@ export class Kept extends Opaque {
       if (kept.#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
       return kept.#address;
     };
-    call = (kept, name, ...given) => wasm()[`${kept.#kind}_${name}`](addressOf(kept), ...given);
+    call = (kept, name, ...given) => wasm()[name](addressOf(kept), ...given);
   }
 
   constructor(kind, address) {
     super();
     this.#kind = kind;
     this.#address = address;
-    registry?.register(this, { kind, address }, this);
+    registry?.register(this, address, this);
   }
 
   free() {
     if (this.#address === 0) return;
     registry?.unregister(this);
-    free({ kind: this.#kind, address: this.#address });
+    free(this.#address);
     this.#address = 0;
   }
 
@@ -168,71 +149,9 @@ export class Kept extends Opaque {
   }
 }
 
-/** An acrobot or a batch. */
-export class Environment extends Kept {
-  get params() {
-    return readParams(this, 0);
-  }
-
-  setParams(changes) {
-    changeParams(this, changes);
-  }
-
-  setDraws(draws) {
-    const names = parameters().slice(0, -1);
-    const given = readSlots("draws", draws, names);
-    for (const [name, draw] of Object.entries(given)) given[name] = readDraw(name, draw);
-    numbers().fill(0);
-    for (const [name, row] of Object.entries(given)) numbers().set(row, 5 * names.indexOf(name));
-    accept(call(this, "set_draws"), given);
-  }
-}
-
-/** Calls a function, and frees what is being made if that throws. */
-export function orFree(kept, make) {
-  try {
-    make();
-  } catch (error) {
-    kept.free();
-    throw error;
-  }
-}
-
-/** The state in the module's words. */
-export const readState = () =>
-  Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
-
 /** The four numbers of a state, by their names. */
 export function checkedState(state) {
   const given = checked("state", state, STATE);
   for (const name of STATE) checkNumber(name, given[name]);
   return given;
-}
-
-/** Sets the state of a single acrobot, or of acrobot `index` of a batch. */
-export function setState(kept, state, index) {
-  const given = checkedState(state);
-  numbers().set(STATE.map((name) => given[name]));
-  accept(call(kept, "set_state", index), given);
-}
-
-/** The parameters of acrobot `index`. A single one ignores the index. */
-export function readParams(kept, index) {
-  const names = parameters();
-  call(kept, "params", index);
-  const params = {};
-  names.forEach((name, i) => {
-    if (name.startsWith("torques")) (params.torques ??= []).push(numbers()[i]);
-    else params[name] = numbers()[i];
-  });
-  Object.freeze(params.torques);
-  return Object.freeze({ ...params, dynamics: DYNAMICS[params.dynamics] });
-}
-
-/** Changes the parameters of all acrobots, or of acrobot `index`. */
-export function changeParams(kept, changes, index) {
-  const names = parameters();
-  const given = readSlots("params", changes, names);
-  const mask = writeSlots(given, names);
-  accept(call(kept, "set_params", mask, index !== undefined, index), given);
 }

@@ -94,9 +94,6 @@ export function copied(what, given) {
 /** A value in an error message. */
 function shown(value) {
   if (typeof value === "string") return JSON.stringify(value);
-  if (typeof value === "bigint") return `${value}n`;
-  if (typeof value === "function") return "a function";
-  if (Object.is(value, -0)) return "-0";
   return Object(value) === value ? tagOf(value) : String(value);
 }
 

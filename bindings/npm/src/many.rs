@@ -1,4 +1,4 @@
-//! Many acrobots at once: the class `Batch` of the package.
+//! The classes `Batch` and `Acrobot` of the package. An `Acrobot` is a batch of one.
 
 use std::mem;
 use std::num::NonZeroU32;
@@ -6,13 +6,13 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Damped};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use acrobot::physics::State;
+use acrobot::physics::{Pendulum, State};
 use acrobot::task::{Balance, Draw, Draws, Gymnasium, ResetBounds, Swingup};
-use acrobot::{Error, Fast, Params, ResetOptions};
+use acrobot::{Action, Error, Fast, Params, ResetOptions};
 use serde::Serialize;
 
 use crate::snapshot::{self, Reader, Rejected, read};
-use crate::{Tasks, with_task, words};
+use crate::words;
 use memory::{set_numbers, zeros};
 
 /// As many as one vector of simd128 has. More take more code and more time.
@@ -24,21 +24,46 @@ type Memory<A> =
 
 type Acrobots<A, T> = Batch<A, Memory<A>, T, LANES>;
 
-type AnyTask = Tasks<
-    Acrobots<Fast, Gymnasium>,
-    Acrobots<Damped<Fast>, Swingup>,
-    Acrobots<Damped<Fast>, Balance>,
->;
+/// The batch, whose type has the task.
+enum Tasks {
+    Acrobot(Acrobots<Fast, Gymnasium>),
+    Swingup(Acrobots<Damped<Fast>, Swingup>),
+    Balance(Acrobots<Damped<Fast>, Balance>),
+}
+
+impl Tasks {
+    /// JavaScript's number of the task.
+    fn number(&self) -> u32 {
+        match self {
+            Self::Acrobot(_) => 0,
+            Self::Swingup(_) => 1,
+            Self::Balance(_) => 2,
+        }
+    }
+}
+
+/// Does something with the batch, whatever its task.
+macro_rules! with_task {
+    ($tasks:expr, $batch:ident => $result:expr) => {
+        match $tasks {
+            Tasks::Acrobot($batch) => $result,
+            Tasks::Swingup($batch) => $result,
+            Tasks::Balance($batch) => $result,
+        }
+    };
+}
 
 /// A batch with its memory, and what JavaScript reads and writes.
 pub struct Many {
-    batch: AnyTask,
+    batch: Tasks,
+    /// Whether it is an `Acrobot`, whose seed, random actions and snapshots are not a batch's.
+    is_alone: bool,
     /// Draws random actions.
     action_space: Pcg64,
     /// JavaScript writes here before a step.
     actions: Vec<u8>,
     torques: Vec<f32>,
-    /// The torques of the actions of each acrobot, or of all.
+    /// The torques of the actions.
     torques_of: Vec<[f32; 3]>,
     /// JavaScript writes here before a reset.
     mask: Vec<bool>,
@@ -59,7 +84,7 @@ fn memory<A: Arithmetic>(count: usize, own_params: bool) -> Option<Memory<A>> {
 }
 
 impl Many {
-    fn new(count: usize, own_params: bool, task: u32) -> Option<Self> {
+    fn new(count: usize, own_params: bool, task: u32, is_alone: bool) -> Option<Self> {
         let seed = SeedSequence::new(0);
         let batch = match task {
             0 => Tasks::Acrobot(Batch::new(seed, memory(count, own_params)?).ok()?),
@@ -67,13 +92,14 @@ impl Many {
             _ => Tasks::Balance(Batch::new(seed, memory(count, own_params)?).ok()?),
         };
         // SAFETY: all are numbers and flags.
-        unsafe {
-            Some(Self {
+        let mut many = unsafe {
+            Self {
                 batch,
+                is_alone,
                 action_space: Pcg64::UNSEEDED,
                 actions: zeros(count)?,
                 torques: zeros(count)?,
-                torques_of: zeros(if own_params { count } else { 1 })?,
+                torques_of: zeros(count)?,
                 mask: zeros(count)?,
                 observations: zeros(count)?,
                 rewards: zeros(count)?,
@@ -81,41 +107,49 @@ impl Many {
                 truncated: zeros(count)?,
                 final_observations: zeros(count)?,
                 ended: zeros(count)?,
-            })
-        }
+            }
+        };
+        many.mask.fill(true);
+        Some(many)
+    }
+
+    fn set_limits(&mut self, max_steps: Option<NonZeroU32>, autoreset: Autoreset) {
+        with_task!(&mut self.batch, batch => {
+            batch.set_max_steps(max_steps.unwrap_or(batch.max_steps()));
+            batch.set_autoreset(autoreset);
+        });
     }
 }
 
-/// Makes a batch that JavaScript resets. A limit of 0 steps stands for the task's. Returns 0
-/// without memory.
+/// Makes a batch that JavaScript resets, or an acrobot alone. A limit of 0 steps stands for the
+/// task's. Returns 0 without memory.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_new(
+pub extern "C" fn make(
     count: usize,
     max_steps: u32,
     autoreset: u32,
     own_params: bool,
     task: u32,
+    is_alone: bool,
 ) -> Option<Box<Many>> {
-    let mut many = memory::keep(Many::new(count, own_params, task)?)?;
-    with_task!(&mut many.batch, batch => {
-        batch.set_max_steps(NonZeroU32::new(max_steps).unwrap_or(batch.max_steps()));
-        batch.set_autoreset(match autoreset {
-            0 => Autoreset::NextStep,
-            1 => Autoreset::SameStep,
-            _ => Autoreset::Disabled,
-        });
-    });
+    let mut many = memory::keep(Many::new(count, own_params, task, is_alone)?)?;
+    let autoreset = match autoreset {
+        0 => Autoreset::NextStep,
+        1 => Autoreset::SameStep,
+        _ => Autoreset::Disabled,
+    };
+    many.set_limits(NonZeroU32::new(max_steps), autoreset);
     Some(many)
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_free(many: Box<Many>) {
+pub extern "C" fn kept_free(many: Box<Many>) {
     drop(many);
 }
 
-/// Writes the settings.
+/// Writes the settings, and the addresses of what JavaScript reads and writes.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_settings(many: &Many) {
+pub extern "C" fn settings(many: &Many) {
     let (max_steps, autoreset, own_params) = with_task!(&many.batch, batch => {
         (batch.max_steps(), batch.autoreset(), batch.has_own_params())
     });
@@ -124,13 +158,6 @@ pub extern "C" fn batch_settings(many: &Many) {
         Autoreset::Disabled => 2,
         _ => 0,
     };
-    let count = many.actions.len() as u32;
-    memory::set(&[count, max_steps.get(), autoreset, own_params.into(), many.batch.number()]);
-}
-
-/// Writes the addresses of what JavaScript reads and writes.
-#[unsafe(no_mangle)]
-pub extern "C" fn batch_arrays(many: &Many) {
     let addresses = [
         many.observations.as_ptr().addr(),
         many.rewards.as_ptr().addr(),
@@ -142,53 +169,78 @@ pub extern "C" fn batch_arrays(many: &Many) {
         many.mask.as_ptr().addr(),
         many.torques.as_ptr().addr(),
     ];
-    memory::set(&addresses.map(|address| address as u32));
+    let [a, b, c, d, e, f, g, h, i] = addresses.map(|address| address as u32);
+    let (count, task) = (many.actions.len() as u32, many.batch.number());
+    let (limit, own) = (max_steps.get(), own_params.into());
+    memory::set(&[count, limit, autoreset, own, task, a, b, c, d, e, f, g, h, i]);
 }
 
-/// Resets the acrobots in the mask.
+/// Resets the acrobots in the mask, or the one alone.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
+pub extern "C" fn reset(many: &mut Many, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
-    let options = ResetOptions { seed, bounds: None };
+    let mut options = ResetOptions { seed, bounds: None };
+    // In a batch an acrobot has a child of the seed.
+    if many.is_alone
+        && let Some(seed) = options.seed.take()
+    {
+        with_task!(&mut many.batch, batch => batch.generators_mut().fill(seed.into()));
+    }
     // Here and below the lengths are equal, so that this cannot fail.
     let _ = with_task!(&mut many.batch, batch => batch.reset_masked(&many.mask, options));
-    for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
-        *ended &= !reset;
+    for (torque, reset) in many.torques.iter_mut().zip(&many.mask) {
+        *torque = if *reset { 0.0 } else { *torque };
     }
     many.note_drawn_torques();
+    observe(many);
 }
 
+/// Computes the observations.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_observe(many: &mut Many) {
+pub extern "C" fn observe(many: &mut Many) {
     let _ = with_task!(&many.batch, batch => batch.observe(&mut many.observations));
+    write_results(many);
 }
 
-/// Draws the actions of Gymnasium's `MultiDiscrete`.
+/// Writes the observation and the reward of an acrobot alone.
+fn write_results(many: &Many) {
+    if let ([[a, b, c, d, e, f]], [reward]) = (&*many.observations, &*many.rewards) {
+        set_numbers([*a, *b, *c, *d, *e, *f, *reward]);
+    }
+}
+
+/// Draws the actions of Gymnasium's `MultiDiscrete`, or of its `Discrete` for an acrobot alone,
+/// whose action it returns.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
+pub extern "C" fn sample(many: &mut Many, words: usize) -> u8 {
+    let rng = &mut many.action_space;
     if words > 0 {
-        many.action_space = memory::seed(words).into();
+        *rng = memory::seed(words).into();
     }
     for action in &mut many.actions {
-        *action = (3.0 * uniform(&mut many.action_space, 0.0, 1.0)) as u8;
+        *action = match many.is_alone {
+            true => Action::sample(rng).into(),
+            false => (3.0 * uniform(rng, 0.0, 1.0)) as u8,
+        };
     }
+    many.actions.first().copied().unwrap_or_default()
 }
 
 impl Many {
     /// Makes torques of the actions: steps of actions, too, would take 17 KB. Returns false if an
     /// action is above 2.
     fn act(&mut self) -> bool {
-        if self.actions.iter().any(|action| *action > 2) {
-            return false;
+        let actions = self.actions.iter().zip(&self.torques_of);
+        for (torque, (action, torques)) in self.torques.iter_mut().zip(actions) {
+            let [negative, zero, positive] = *torques;
+            // Without a branch, so that the compiler vectorizes the loop.
+            *torque = match action {
+                0 => negative,
+                1 => zero,
+                _ => positive,
+            };
         }
-        let torques = self.torques.iter_mut().zip(&self.actions);
-        match *self.torques_of {
-            [shared] => torques.for_each(|(torque, action)| *torque = torque_of(shared, *action)),
-            ref each => torques.zip(each).for_each(|((torque, action), of)| {
-                *torque = torque_of(*of, *action);
-            }),
-        }
-        true
+        self.actions.iter().all(|action| *action <= 2)
     }
 
     /// Notes the torques of the actions after a change of parameters.
@@ -238,59 +290,77 @@ impl Many {
     }
 }
 
-/// Without a branch, so that the compiler vectorizes loops.
-fn torque_of([negative, zero, positive]: [f32; 3], action: u8) -> f32 {
-    match action {
-        0 => negative,
-        1 => zero,
-        _ => positive,
-    }
-}
-
 /// Steps with the torques, or with the actions. Returns false if an action is above 2 or a torque
 /// not finite. Then nothing changes.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_step(many: &mut Many, given_torques: bool) -> bool {
+pub extern "C" fn step(many: &mut Many, given_torques: bool) -> bool {
     if !given_torques && !many.act() {
         return false;
     }
     let buffers = StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated)
         .with_observations(&mut many.observations)
         .with_final_observations(&mut many.final_observations);
-    let (stepped, autoreset) = with_task!(&mut many.batch, batch => {
-        (batch.step_into(&many.torques, buffers).is_ok(), batch.autoreset())
-    });
-    if stepped {
-        let lasting = autoreset == Autoreset::Disabled;
-        let flags = many.terminated.iter().zip(&many.truncated);
-        for (ended, (terminated, truncated)) in many.ended.iter_mut().zip(flags) {
-            *ended = (*ended & lasting) | terminated | truncated;
+    with_task!(&mut many.batch, batch => {
+        if batch.step_into(&many.torques, buffers).is_err() {
+            return false;
         }
-        many.note_drawn_torques();
+        let lasts = batch.autoreset() == Autoreset::Disabled;
+        let flags = many.terminated.iter().zip(&many.truncated);
+        for (i, (ended, (terminated, truncated))) in many.ended.iter_mut().zip(flags).enumerate() {
+            *ended = terminated | truncated;
+            if lasts {
+                *ended |= batch.ended_of(i).unwrap_or_default();
+            }
+        }
+    });
+    many.note_drawn_torques();
+    true
+}
+
+/// Steps an acrobot alone. In the result, bit 0 says that the step reached the goal, and bit 1 that
+/// the episode was truncated.
+#[unsafe(no_mangle)]
+pub extern "C" fn step_torque(many: &mut Many, torque: f32) -> u32 {
+    many.torques.fill(torque);
+    step(many, true);
+    write_results(many);
+    let flags = many.terminated.iter().zip(&many.truncated);
+    flags.fold(0, |_, (terminated, truncated)| u32::from(*terminated) | u32::from(*truncated) << 1)
+}
+
+/// As `step_torque`.
+#[unsafe(no_mangle)]
+pub extern "C" fn step_action(many: &mut Many, action: usize) -> u32 {
+    let torque = many.torques_of.first().and_then(|torques| torques.get(action));
+    step_torque(many, torque.copied().unwrap_or_default())
+}
+
+/// Writes the state of an acrobot, its energy, its tip's height, the torque of its last step, and
+/// its steps.
+#[unsafe(no_mangle)]
+pub extern "C" fn read_one(many: &Many, index: usize) {
+    let read = with_task!(&many.batch, batch => {
+        let params = batch.params_of(index);
+        params.zip(batch.state_of(index)).zip(batch.elapsed_steps_of(index))
+    });
+    if let (Some(((params, state), elapsed_steps)), Some(torque)) = (read, many.torques.get(index))
+        && let Ok(pendulum) = Pendulum::<Damped<Fast>>::new(params, state)
+    {
+        let [a, b, c, d] = state.into();
+        let numbers = [a, b, c, d, pendulum.energy(), pendulum.tip_height(), *torque];
+        let [a, b, c, d, e, f, g] = numbers.map(f32::to_bits);
+        memory::set(&[a, b, c, d, e, f, g, elapsed_steps]);
     }
-    stepped
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_state(many: &Many, index: usize) {
-    if let Some(state) = with_task!(&many.batch, batch => batch.state_of(index)) {
-        set_numbers(state.into());
-    }
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn batch_set_state(many: &mut Many, index: usize) -> u32 {
+pub extern "C" fn set_state(many: &mut Many, index: usize) -> u32 {
     let state = words::get_state();
     memory::reason(with_task!(&mut many.batch, batch => batch.set_state_of(index, state)))
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_elapsed_steps(many: &Many, index: usize) -> u32 {
-    with_task!(&many.batch, batch => batch.elapsed_steps_of(index)).unwrap_or_default()
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn batch_params(many: &Many, index: usize) {
+pub extern "C" fn params(many: &Many, index: usize) {
     if let Some(params) = with_task!(&many.batch, batch => batch.params_of(index)) {
         words::set_params(&params);
     }
@@ -298,27 +368,30 @@ pub extern "C" fn batch_params(many: &Many, index: usize) {
 
 /// Changes the parameters in the mask, of acrobot `index` or of all.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params(many: &mut Many, mask: u32, of_one: bool, index: usize) -> u32 {
+pub extern "C" fn set_params(many: &mut Many, mask: u32, of_one: bool, index: usize) -> u32 {
     let changed = many.set_params(of_one.then_some(index), mask);
     many.note_torques();
     memory::reason(changed)
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_draws(many: &mut Many) -> u32 {
+pub extern "C" fn set_draws(many: &mut Many) -> u32 {
     memory::reason(many.set_draws())
 }
+
+/// The fields of an acrobot's snapshot after the header and the parameters.
+type Alone = (State<f32>, Pcg64, NonZeroU32, u32);
 
 /// The fields of a batch's snapshot after the number of acrobots and one, and the header: the
 /// bounds of initial states, the limit of steps, when resets are, and whether parameters are own.
 type Settings = (f64, f64, NonZeroU32, Autoreset, bool);
 
-/// The fields of an acrobot.
+/// The fields of each of its acrobots after the parameters.
 type Fields = (State<f32>, u32, bool, Pcg64);
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_save(many: &Many) -> usize {
-    let count = many.actions.len();
+pub extern "C" fn save(many: &Many) -> usize {
+    let (count, task) = (many.actions.len(), many.batch.number());
     let (settings, draws): (Settings, _) = with_task!(&many.batch, batch => {
         let (bounds, draws) = (batch.reset_bounds(), *batch.draws().params());
         let (low, high, limit) = (bounds.low(), bounds.high(), batch.max_steps());
@@ -326,18 +399,27 @@ pub extern "C" fn batch_save(many: &Many) -> usize {
     });
     // The settings have less than 512 bytes, each acrobot at most 151.
     snapshot::save(512 + count * 151, |writer| {
-        (count as u32 + 1).serialize(&mut *writer)?;
-        snapshot::write_header("batch", many.batch.number(), writer)?;
-        settings.serialize(&mut *writer)?;
-        snapshot::write_params(draws, writer)?;
+        if many.is_alone {
+            snapshot::write_header("acrobot", task, writer)?;
+        } else {
+            (count as u32 + 1).serialize(&mut *writer)?;
+            snapshot::write_header("batch", task, writer)?;
+            settings.serialize(&mut *writer)?;
+            snapshot::write_params(draws, writer)?;
+        }
         for index in 0..count {
-            let fields: Option<(_, Fields)> = with_task!(&many.batch, batch => {
+            let member = with_task!(&many.batch, batch => {
                 batch.member(index).map(|Member { params, state, elapsed_steps, ended, rng }| {
                     (params, (state, elapsed_steps, ended, rng))
                 })
             });
-            if let Some((params, fields)) = fields {
+            if let Some((params, fields)) = member {
                 snapshot::write_params(params, writer)?;
+                if many.is_alone {
+                    let (state, elapsed_steps, _, rng) = fields;
+                    let alone: Alone = (state, rng, settings.2, elapsed_steps);
+                    return alone.serialize(writer);
+                }
                 fields.serialize(&mut *writer)?;
             }
         }
@@ -345,7 +427,11 @@ pub extern "C" fn batch_save(many: &Many) -> usize {
     })
 }
 
-fn load(mut reader: Reader<'_>, len: usize) -> Result<Many, Rejected> {
+fn load(mut reader: Reader<'_>, len: usize, is_alone: bool) -> Result<Many, Rejected> {
+    if is_alone {
+        let task = snapshot::read_header(&mut reader, "acrobot")?;
+        return load_alone(reader, task).ok_or(Rejected::Contents);
+    }
     let count: u32 = read(&mut reader).ok_or(Rejected::Header)?;
     let task = snapshot::read_header(&mut reader, "batch")?;
     let count = count.saturating_sub(1) as usize;
@@ -353,42 +439,55 @@ fn load(mut reader: Reader<'_>, len: usize) -> Result<Many, Rejected> {
     if count > len / 89 {
         return Err(Rejected::Contents);
     }
-    load_fields(reader, count, task).ok_or(Rejected::Contents)
+    load_batch(reader, count, task).ok_or(Rejected::Contents)
 }
 
-fn load_fields(mut reader: Reader<'_>, count: usize, task: u32) -> Option<Many> {
+fn load_alone(mut reader: Reader<'_>, task: u32) -> Option<Many> {
+    let mut many = Many::new(1, true, task, true)?;
+    let params = snapshot::read_params(&mut reader, Params::DEFAULT)?;
+    let (state, rng, max_steps, elapsed_steps) = read::<Alone>(&mut reader)?;
+    many.set_limits(Some(max_steps), Autoreset::Disabled);
+    many.load_member(0, params, (state, elapsed_steps, false, rng))?;
+    many.note_torques();
+    reader.finalize().ok()?.is_empty().then_some(many)
+}
+
+fn load_batch(mut reader: Reader<'_>, count: usize, task: u32) -> Option<Many> {
     let (low, high, max_steps, autoreset, own_params) = read::<Settings>(&mut reader)?;
-    let mut draws: Params<Draw<f32>> = Draws::FIXED;
-    snapshot::read_params(&mut reader, &mut draws)?;
-    let mut many = Many::new(count, own_params, task)?;
+    let draws: Params<Draw<f32>> = snapshot::read_params(&mut reader, Draws::FIXED)?;
+    let mut many = Many::new(count, own_params, task, false)?;
     for index in 0..count {
-        let mut params = Params::DEFAULT;
-        snapshot::read_params(&mut reader, &mut params)?;
-        let (state, elapsed_steps, ended, rng) = read::<Fields>(&mut reader)?;
-        with_task!(&mut many.batch, batch => {
-            // The first brings the parameters, if all acrobots share them.
-            if index == 0 {
-                batch.set_params(params).ok()?;
-            }
-            let member = Member { params, state, elapsed_steps, ended, rng };
-            batch.set_member(index, member).ok()?;
-        });
-        *many.ended.get_mut(index)? = ended;
+        let params = snapshot::read_params(&mut reader, Params::DEFAULT)?;
+        many.load_member(index, params, read(&mut reader)?)?;
     }
+    many.set_limits(Some(max_steps), autoreset);
     with_task!(&mut many.batch, batch => {
         batch.set_draws(Draws::new(draws).ok()?).ok()?;
         batch.set_reset_bounds(ResetBounds::new(low, high).ok()?);
-        batch.set_max_steps(max_steps);
-        batch.set_autoreset(autoreset);
     });
     many.note_torques();
     reader.finalize().ok()?.is_empty().then_some(many)
 }
 
-/// Loads a snapshot. If it is invalid, or without memory, nothing changes.
+impl Many {
+    fn load_member(&mut self, index: usize, params: Params<f32>, fields: Fields) -> Option<()> {
+        let (state, elapsed_steps, ended, rng) = fields;
+        with_task!(&mut self.batch, batch => {
+            // The first brings the parameters, if all acrobots share them.
+            if index == 0 {
+                batch.set_params(params).ok()?;
+            }
+            let member = Member { params, state, elapsed_steps, ended, rng };
+            batch.set_member(index, member).ok()
+        })
+    }
+}
+
+/// Loads a snapshot of any task. If it is invalid, or without memory, nothing changes.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_load(many: &mut Many, address: *const u8, len: usize) -> u32 {
-    let loaded = snapshot::open(address, len).and_then(|reader| load(reader, len));
+pub extern "C" fn load_snapshot(many: &mut Many, address: *const u8, len: usize) -> u32 {
+    let reader = snapshot::open(address, len);
+    let loaded = reader.and_then(|reader| load(reader, len, many.is_alone));
     snapshot::code(loaded.map(|mut loaded| {
         mem::swap(&mut loaded.action_space, &mut many.action_space);
         *many = loaded;

@@ -69,8 +69,8 @@ pub fn write_header(of: &'static str, task: u32, writer: &mut Writer<'_>) -> pos
 /// Reads parameters or draws over others. Their own code would take 3 KB more.
 pub fn read_params<'a, S: Copy + Deserialize<'a>>(
     reader: &mut Reader<'a>,
-    params: &mut Params<S>,
-) -> Option<()> {
+    mut params: Params<S>,
+) -> Option<Params<S>> {
     let mut dynamics = Dynamics::Book;
     for (slot, number) in params.numbers_mut().into_iter().enumerate() {
         if slot == 16 {
@@ -79,7 +79,7 @@ pub fn read_params<'a, S: Copy + Deserialize<'a>>(
         *number = read(reader)?;
     }
     params.dynamics = dynamics;
-    Some(())
+    Some(params)
 }
 
 pub fn write_params<S: Copy + Serialize>(

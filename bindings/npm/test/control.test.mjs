@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
-import { Planner, linearize, linearizeStep, lqr, regulator } from "../dist/control.js";
+import { Planner, regulator } from "../dist/control.js";
 import { Acrobot } from "../dist/index.js";
 import { assertRejected } from "./module.mjs";
 
@@ -47,28 +47,18 @@ test("a plan, and an acrobot that follows it, are bit-identical to native ones",
   assert.ok(acrobot.tipHeight > 1.999);
 });
 
-test("a plan is improved in place for other weights and another start", () => {
-  const [planner, plan] = planned();
-  const before = { ...plan, torques: plan.torques.slice() };
+test("a cost's weights change the plan", () => {
+  const [, plan] = planned();
   const jumps = ({ torques }) =>
     torques.slice(1).reduce((sum, torque, i) => sum + (torque - torques[i]) ** 2, 0);
   const smooth = new Planner(PARAMS, 7, { torqueChange: 1, angles: [0.1, 0] });
-  const start = state(0.05);
-  const costs = [1, 30, 30].map((iterations) => smooth.improve(start, iterations, plan));
-  assert.ok(costs[0] > costs[1] && costs[1] >= costs[2], costs.join());
-  assert.ok(jumps(plan) < jumps(before) / 2);
-  assert.equal(plan.states[0], Math.fround(0.05));
-  assert.ok(planner.improve(start, 1, plan) !== costs[2]);
+  assert.ok(jumps(smooth.plan(HANGING, { steps: 1100, seed: 4 })) < jumps(plan) / 2);
 });
 
 test("without a plan, the torque pumps energy and then holds", () => {
   const planner = new Planner(PARAMS, 7);
   const acrobot = new Acrobot({ seed: 42, params: PARAMS });
-  for (let i = 0; i < 6000; i++) {
-    const torque = planner.decide(acrobot.state);
-    assert.ok(Math.abs(torque) <= 7);
-    acrobot.stepTorque(torque);
-  }
+  for (let i = 0; i < 6000; i++) acrobot.stepTorque(planner.decide(acrobot.state));
   assert.ok(acrobot.tipHeight > 1.999);
   assert.equal(planner.plan(HANGING, { steps: 10, tries: 3 }), null);
 });
@@ -78,6 +68,7 @@ test("a regulator holds the acrobots of both tasks", () => {
     const acrobot = new Acrobot({ task, params: { dt: 0.02 } });
     acrobot.setParams({ mass2: 1.5 });
     const { gain, costToGo } = regulator(acrobot.params, EYE, 1);
+    assert.equal(costToGo[1][2], costToGo[2][1]);
     acrobot.state = state(Math.PI - 0.02, 0.02);
     for (let i = 0; i < 1000; i++) {
       const { theta1, theta2, dtheta1, dtheta2 } = acrobot.state;
@@ -85,44 +76,19 @@ test("a regulator holds the acrobots of both tasks", () => {
       acrobot.stepTorque(-x.reduce((sum, each, j) => sum + each * gain[j], 0));
     }
     assert.ok(acrobot.tipHeight > 1.9999);
-    const own = lqr(linearizeStep(UPRIGHT, 0, acrobot.params), EYE, 1);
-    assert.deepEqual(own, { gain, costToGo });
-    assert.deepEqual(costToGo[1][2], costToGo[2][1]);
   }
   // Hanging, the acrobot needs less.
   const [up, down] = [UPRIGHT, HANGING].map((each) => regulator(PARAMS, EYE, 1, each).gain);
   assert.ok(Math.abs(up[0]) > 10 * Math.abs(down[0]));
 });
 
-test("linear models are derivatives of a step and of the motion", () => {
-  const [at, params] = [state(0.4, -0.3, 1, 2), { dt: 0.05, dynamics: "nips" }];
-  const acrobot = new Acrobot({ params });
-  const after = (dtheta1, torque) => {
-    acrobot.state = { ...at, dtheta1 };
-    acrobot.stepTorque(torque);
-    return acrobot.state.theta2;
-  };
-  const { a, b } = linearizeStep(at, 0.5, params);
-  assert.ok(Math.abs((after(1.1, 0.5) - after(0.9, 0.5)) / 0.2 - a[1][2]) < 1e-4);
-  assert.ok(Math.abs((after(1, 1.5) - after(1, -0.5)) / 2 - b[1]) < 1e-4);
-  const rates = linearize(at, 0.5, params);
-  assert.deepEqual([...rates.a[1], rates.b[1]], [0, 0, 0, 1, 0]);
-  assert.ok(Math.abs(b[3] / 0.05 - rates.b[3]) < 0.05);
-});
-
 test("invalid arguments are rejected with Rust's messages", () => {
   const [planner, plan] = planned();
-  const before = structuredClone(plan);
   const make = (limit, cost) => () => new Planner(PARAMS, limit, cost);
-  const hold = (q, r = 1, at = UPRIGHT) => () => regulator(PARAMS, q, r, at);
+  const hold = (q, r = 1, at = UPRIGHT, params = PARAMS) => () => regulator(params, q, r, at);
   const first = (...row) => [row, ...EYE.slice(1)];
-  const zero = EYE.map((row) => row.map(() => 0));
-  const model = (a, b) => () =>
-    lqr({ a: [[a, 0, 0, 0], ...zero.slice(1)], b: [b, 0, 0, 0] }, zero, 1);
-  const improve = (start, changes) => () => planner.improve(start, 1, { ...plan, ...changes });
-  const rows = [
-    ["RangeError", "dt must be finite and above 0 s",
-      ["-1", () => linearize(HANGING, 0, { dt: -1 })]],
+  assertRejected([
+    ["RangeError", "dt must be finite and above 0 s", ["-1", hold(EYE, 1, UPRIGHT, { dt: -1 })]],
     ["RangeError", "r must be finite and above 0 per (N m)²", ["-0.1", hold(EYE, -0.1)]],
     ["TypeError", "q[0][1] must be a number", ["null", hold(first(1, null, 0, 0))]],
     ["RangeError", "q must be symmetric",
@@ -133,38 +99,29 @@ test("invalid arguments are rejected with Rust's messages", () => {
     ["RangeError",
       "the state must be in equilibrium, with velocities of 0 and accelerations of at most 0.01 " +
       "rad/s²", ["0.5", hold(EYE, 1, state(0, 0, 0.5))]],
-    ["RangeError", "the relative error of the gain must be at most 1e-9",
-      ["1.1920928955078125e-7", model(1e9, 3)]],
     ["RangeError", "the largest torque must be finite and above 0 N m", ["-0.3", make(-0.3)]],
-    ["RangeError", "height must be a finite number of m", ["NaN", make(1, { height: NaN })]],
     ["TypeError", "steps must be an integer from 1 to 2^32 - 1",
       ["undefined", () => planner.plan(HANGING, {})]],
     ["RangeError", "steps must fit into WebAssembly's memory of at most 4 GiB",
       ["4294967295 more", () => planner.plan(HANGING, { steps: 2 ** 32 - 1 })]],
     ["RangeError", "theta1 must be a finite number of rad",
-      ["NaN", () => planner.plan(state(NaN), { steps: 10 })],
-      ["Infinity", () => planner.decide(state(Infinity))]],
+      ["NaN", () => planner.plan(state(NaN), { steps: 10 })]],
     ["TypeError", "plan must be one that a planner returns",
       ["null", () => planner.follow(null, 0, HANGING)]],
     ["TypeError", "plan[0][5] must be a finite number",
-      ["undefined", improve(HANGING, { gains: [] })]],
+      ["undefined", () => planner.follow({ ...plan, gains: [] }, 0, HANGING)]],
     ["RangeError", "step must be an integer of at least 0",
       ["-1", () => planner.follow(plan, -1, HANGING)]],
-  ];
-  assertRejected(rows);
-  const throws = (call, message) => assert.throws(call, { name: "RangeError", message });
+  ]);
+  const rejects = (call, message) => assert.throws(call, { name: "RangeError", message });
   const [one, two] = [-0.1, [-0.1, -0.2]];
   const single = { torque: one, torqueChange: one, power: one, below: one, margin: one };
   const weights = { ...single, arrival: one, angles: two, velocities: two };
   for (const [name, weight] of Object.entries(weights)) {
-    const message = new RegExp(`^${name} must be finite and .*, got -0.1$`);
-    throws(make(1, { [name]: weight }), message);
+    rejects(make(1, { [name]: weight }), new RegExp(`^${name} must be finite and .*, got -0.1$`));
   }
   const reach = "the torque must reach each motion that grows or persists, but does not reach one";
-  throws(model(2, 0), reach);
-  throws(model(1, 1), "q must weight each motion that persists, but does not weight one");
-  throws(improve(state(0, 0, 1e30)), /^cost must be finite in each element, got /);
-  assert.deepEqual(plan, before);
+  rejects(hold(EYE, 1, UPRIGHT, { gravity: 0 }), reach);
   planner.free();
   planner.free();
   const message = "the planner has been freed";

@@ -1,10 +1,12 @@
-// Calls that Rust rejects: tests/data/rejections.jsonl, which Rust's own tests write.
+// Invalid arguments are rejected, and nothing changes: what Rust rejects, from
+// tests/data/rejections.jsonl, which Rust's own tests write, and what JavaScript does.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { Acrobot, Batch } from "../dist/index.js";
+import { assertRejected } from "./module.mjs";
 
 const path = new URL("../../../tests/data/rejections.jsonl", import.meta.url);
 const camel = (name) =>
@@ -70,4 +72,79 @@ test("what Rust rejects is rejected with the same message, and nothing changes",
     }
   }
   assert.ok(rows.length > 100);
+});
+
+const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
+const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
+const DRAW =
+  "mass1 must be drawn by [low, high], { logUniform: [low, high] }, " +
+  '{ normal: [mean, std, low, high] }, "asBefore" or "fixed"';
+
+test("other arguments are rejected with the value and the rule, and nothing changes", () => {
+  const acrobot = new Acrobot({ seed: 1 });
+  const batch = new Batch({ seed: 1, count: 3 });
+  const names = Object.keys(acrobot.params);
+  const snapshots = () => [acrobot.snapshot(), batch.snapshot()];
+  const before = snapshots();
+  const step = (actions) => () => batch.step(actions);
+  const set = (params) => () => acrobot.setParams(params);
+  const draw = (draws) => () => acrobot.setDraws(draws);
+  const make = (options) => () => new Acrobot(options);
+  const many = (options) => () => new Batch(options);
+  const picture = (options) => () => acrobot.draw({ arc() {} }, options);
+  const rows = [
+    ["RangeError", `action ${ACTION}`, ["1.5", () => acrobot.step(1.5)]],
+    ["TypeError", `action ${ACTION}`,
+      ["1", () => acrobot.step(1n)], ['"1"', () => acrobot.step("1")]],
+    ["TypeError", "torque must be a finite number of N m", ['"1"', () => acrobot.stepTorque("1")]],
+    ["RangeError", 'friction1 must be 0 in the task "acrobot", in N m s/rad',
+      ["0.1", set({ friction1: 0.1 })], ["0.2", draw({ friction1: [0, 0.2] })]],
+    ["TypeError", "mass1[1] must be a number", ['"2"', draw({ mass1: [1, "2"] })]],
+    ["TypeError", DRAW, ["null", draw({ mass1: null })]],
+    ["RangeError", "mass1 must have 2 elements", ["3", draw({ mass1: [1, 2, 3] })]],
+    ["TypeError", `draws must be among ${names.slice(0, -1).join(", ")}`,
+      ["dynamics", draw({ dynamics: "nips" })]],
+    ["RangeError", SEED,
+      ["-1", () => acrobot.reset(-1n)], ["9007199254740992", () => acrobot.reset(2 ** 53)],
+      [`${1n << 2048n}`, () => acrobot.sample(1n << 2048n)]],
+    ["TypeError", SEED, ['"42"', make({ seed: "42" })]],
+    ["TypeError", "mass1 must be a number", ["undefined", set({ mass1: undefined })]],
+    ["RangeError", "gravity must be a finite number of m/s²",
+      ["1e+39, which is Infinity in single precision", set({ gravity: 1e39 })]],
+    ["TypeError", `params must be among ${names.join(", ")}`, ["mass", set({ mass: 1 })]],
+    ["TypeError", "theta2 must be a number", ["undefined", () => (acrobot.state = { theta1: 0 })]],
+    ["RangeError", "maxSteps must be an integer from 1 to 2^32 - 1",
+      ["4294967296", make({ maxSteps: 2 ** 32 })]],
+    ["TypeError", "options must be among seed, params, maxSteps, task, draws",
+      ["count", make({ count: 1 })]],
+    ["TypeError", 'task must be "acrobot" or "swingup" or "balance"', ["1", make({ task: 1 })]],
+    ["TypeError", "context must be a canvas's 2D context", ["undefined", () => acrobot.draw()]],
+    ["RangeError", "options.size must be finite and at least 0 pixels", ["NaN", picture()]],
+    ["RangeError", "actions must have 3 elements", ["2", step(new Uint8Array(2))]],
+    ["TypeError", "actions must be an array of 3 elements", ["3", step(3)]],
+    ["RangeError", `actions[1] ${ACTION}`,
+      ["3", step(Uint8Array.of(0, 3, 1))], ["258", step([0, 258, 1])]],
+    ["RangeError", "torques[1] must be a finite number of N m",
+      ["NaN", () => batch.stepTorque(Float32Array.of(0, NaN, 1))],
+      ["1e+39, which is Infinity in single precision", () => batch.stepTorque([0, 1e39, 1])]],
+    ["RangeError", "mask[1] must be true, false, 1 or 0",
+      ["2", () => batch.resetMasked([1, 2, 1])]],
+    ["RangeError", "index must be an integer from 0 to 2",
+      ["3", () => batch.setStateOf(3, {})], ["-1", () => batch.setParamsOf(-1, {})]],
+    ["TypeError", "index must be an integer from 0 to 2",
+      ["undefined", () => batch.draw({ arc() {} })]],
+    ["RangeError", "ownParams must be true for parameters of each acrobot",
+      ["false", () => batch.setParamsOf(0, { mass1: 2 })]],
+    ["TypeError", "ownParams must be true or false", ["1", many({ count: 1, ownParams: 1 })]],
+    ["TypeError", "options must be a plain object", ["undefined", many()]],
+    ["TypeError", "count must be an integer from 1 to 2^32 - 1", ["undefined", many({})]],
+    ["RangeError", "acrobots must fit into WebAssembly's memory of at most 4 GiB",
+      ["4294967295 more", many({ count: 2 ** 32 - 1 })]],
+  ];
+  assertRejected(rows, () => assert.deepEqual(snapshots(), before));
+  // A change of all acrobots that one of them rejects changes none.
+  const own = new Batch({ count: 2, ownParams: true });
+  own.setParamsOf(1, { centerOfMass1: 0 });
+  assert.throws(() => own.setParams({ inertia1: 0 }), /^RangeError: inertia1 must be above 0 if/);
+  assert.equal(own.paramsOf(0).inertia1, 1);
 });

@@ -13,8 +13,9 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::engine::{Engine, Inputs, memory, with_batch};
+use crate::engine::{Engine, Inputs, out_of_memory, with_batch};
 use crate::pool::Pool;
+use crate::task::AnyTask;
 use crate::{alone, check_states, load, places, rejected, render, save};
 
 #[pyclass(module = "acrobot_rs._native")]
@@ -30,13 +31,13 @@ pub struct Batch {
 impl Batch {
     #[new]
     #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed="0", max_episode_steps=NonZeroU32::MAX,
-        mode="NextStep", engine="acrobot", continuous=false, threads=NonZeroU32::MIN))]
+        mode="NextStep", kind=("acrobot", "float32"), continuous=false, threads=NonZeroU32::MIN))]
     fn new(
         num_envs: NonZeroU32,
         seed: &str,
         max_episode_steps: NonZeroU32,
         mode: &str,
-        engine: &str,
+        kind: (&str, &str),
         continuous: bool,
         threads: NonZeroU32,
     ) -> PyResult<Self> {
@@ -45,7 +46,9 @@ impl Batch {
             "SameStep" => Autoreset::SameStep,
             _ => Autoreset::Disabled,
         };
-        let mut engine = Engine::new(engine, num_envs.get() as usize, parse(seed)?)?;
+        let ((task, arithmetic), len) = (kind, num_envs.get() as usize);
+        let engine = Engine::new(arithmetic, AnyTask::named(task), len, parse(seed)?);
+        let mut engine = engine.map_err(out_of_memory)?;
         with_batch!(&mut engine, many => {
             many.batch.set_max_steps(max_episode_steps);
             many.batch.set_autoreset(mode);
@@ -59,14 +62,12 @@ impl Batch {
 
     /// Sets a parameter of all acrobots to one value, or to a value for each.
     fn set(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
-        let set = |engine: &mut _| with_batch!(engine, many => many.set(name, &values));
-        alone(slf)?.engine.change(name, set)
+        with_batch!(&mut alone(slf)?.engine, many => many.set(name, &values))
     }
 
     /// Sets a parameter that each reset draws.
     fn set_drawn(slf: &Bound<'_, Self>, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
-        let set = |engine: &mut _| with_batch!(engine, many => many.set_drawn(name, drawn));
-        alone(slf)?.engine.change(name, set)
+        with_batch!(&mut alone(slf)?.engine, many => many.set_drawn(name, drawn))
     }
 
     /// Writes the numbers of a parameter: a row for each acrobot, of three of `AVAIL_TORQUE`.
@@ -164,9 +165,8 @@ impl Batch {
         };
         let this = &mut *alone(slf)?;
         with_batch!(&mut this.engine, many => many.read(inputs))?;
-        let mut rewards = memory(0.0, len)?;
-        let mut terminated = memory(false, len)?;
-        let mut truncated = memory(false, len)?;
+        let mut rewards = vec![0.0; len];
+        let (mut terminated, mut truncated) = (vec![false; len], vec![false; len]);
         let mut observations = observations.try_readwrite()?; // all calls can share this array
         let rows = observations.as_slice_mut()?.as_chunks_mut().0;
         let mut buffers =
@@ -176,13 +176,8 @@ impl Batch {
         }
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
-        let task = match engine {
-            Engine::Reference(_) | Engine::DampedReference(_) | Engine::Host(_) => 1024,
-            Engine::ReferenceSwingup(_) | Engine::ReferenceBalance(_) => 1024,
-            _ => 16_384,
-        };
-        let tasks = len.div_ceil(task);
-        match tasks.min(this.threads.get() as usize) {
+        let task = if matches!(engine, Engine::Float32(_)) { 16_384 } else { 1024 };
+        match len.div_ceil(task).min(this.threads.get() as usize) {
             1 => py.detach(|| with_batch!(engine, many => many.step(buffers, false))),
             threads => {
                 let pool = Pool::of_this_process(&mut this.pool, threads)?;

@@ -19,7 +19,7 @@ pub fn compute<'py>(
     acrobot: PyRef<'py, Acrobot>,
     rows: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let (py, one) = (acrobot.py(), acrobot.inner.acrobot.clone());
+    let (py, one) = (acrobot.py(), acrobot.acrobot.clone());
     drop(acrobot); // other threads may step it
     let rows = rows.as_slice()?.chunks_exact(rows.shape()[1]);
     let results: PyResult<_> = py.detach(|| {
@@ -100,7 +100,7 @@ impl Planner {
         pairs: [[f32; 2]; 2],
         weights: [f32; 5],
     ) -> PyResult<Self> {
-        let params = acrobot.inner.acrobot.params().cast();
+        let params = acrobot.acrobot.params().cast();
         let Cost { height: reach, margin: tenth, .. } = Cost::new(&params);
         let [angles, velocities] = pairs;
         let [torque, torque_change, power, below, arrival] = weights;
@@ -115,11 +115,8 @@ impl Planner {
             margin: margin.unwrap_or(tenth),
             arrival,
         };
-        let planner = match clamps {
-            true => control::Planner::for_simulation(params, max_torque, cost),
-            false => control::Planner::with_cost(params, max_torque, cost),
-        };
-        planner.map(Self).map_err(rejected)
+        let planner = control::Planner::with_cost(params, max_torque, cost).map_err(rejected)?;
+        Ok(Self(if clamps { planner.for_simulation() } else { planner }))
     }
 
     fn plan(

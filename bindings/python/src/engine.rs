@@ -1,9 +1,11 @@
-//! A batch of one of nine pairs of arithmetic and task.
+//! A batch of any arithmetic and task.
+
+use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
-use acrobot::batch::{StepBuffers, VecBatch};
+use acrobot::batch::{Autoreset, Member, StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::task::{Balance, Draw, Draws, Gymnasium, Swingup, Task};
+use acrobot::task::{Draw, Draws};
 use acrobot::{Acrobot, Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -12,10 +14,8 @@ use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    InvalidAction, Name, Params, check_states, invalid, load, must_be, places, rejected, to_bytes,
-    torque_of, with,
-};
+use crate::task::AnyTask;
+use crate::{InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, with};
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
 #[derive(FromPyObject)]
@@ -40,104 +40,105 @@ impl<'py> Inputs<'py> {
     }
 }
 
+/// A batch in one of three arithmetics. All have friction, which takes 2 % of a step where it is 0.
 #[derive(Serialize, Deserialize)]
 pub enum Engine {
-    Fast(Many<Fast>),
-    DampedFast(Many<Damped<Fast>>),
-    /// Computes as Gymnasium does, without friction.
-    Host(Many<Host>),
-    Swingup(Many<Damped<Fast>, Swingup>),
-    Balance(Many<Damped<Fast>, Balance>),
-    Reference(Many<Reference>),
-    DampedReference(Many<Damped<Reference>>),
-    ReferenceSwingup(Many<Damped<Reference>, Swingup>),
-    ReferenceBalance(Many<Damped<Reference>, Balance>),
+    Float32(Many<Damped<Fast>>),
+    Float64(Many<Damped<Reference>>),
+    /// Computes as Gymnasium does.
+    Gymnasium(Many<Damped<Host>>),
 }
 
 impl Engine {
-    pub fn new(name: &str, len: usize, seed: SeedSequence) -> PyResult<Self> {
-        Ok(match name {
-            "gymnasium" => Self::Host(Many::new(len, seed)?),
-            "swingup" => Self::Swingup(Many::new(len, seed)?),
-            "balance" => Self::Balance(Many::new(len, seed)?),
-            "acrobot_float64" => Self::Reference(Many::new(len, seed)?),
-            "swingup_float64" => Self::ReferenceSwingup(Many::new(len, seed)?),
-            "balance_float64" => Self::ReferenceBalance(Many::new(len, seed)?),
-            _ => Self::Fast(Many::new(len, seed)?),
+    pub fn new(
+        arithmetic: &str,
+        task: AnyTask,
+        len: usize,
+        seed: SeedSequence,
+    ) -> Result<Self, Error> {
+        Ok(match arithmetic {
+            "float64" => Self::Float64(Many::new(task, len, seed)?),
+            "gymnasium" => Self::Gymnasium(Many::new(task, len, seed)?),
+            _ => Self::Float32(Many::new(task, len, seed)?),
         })
     }
-
-    /// Changes a parameter. Gymnasium's task has an arithmetic with friction only where there is
-    /// friction, because the other one saves time.
-    pub fn change(
-        &mut self,
-        name: &str,
-        change: impl Fn(&mut Self) -> PyResult<()>,
-    ) -> PyResult<()> {
-        let changed = change(self);
-        if !name.starts_with("FRICTION") {
-            return changed;
-        }
-        if let Err(error) = changed {
-            let mut damped = match self {
-                Self::Fast(many) => Self::DampedFast(converted(many)?),
-                Self::Reference(many) => Self::DampedReference(converted(many)?),
-                _ => return Err(error),
-            };
-            change(&mut damped)?;
-            *self = damped;
-        }
-        let undamped = match self {
-            Self::DampedFast(many) => converted(many).map(Self::Fast),
-            Self::DampedReference(many) => converted(many).map(Self::Reference),
-            _ => return Ok(()),
-        };
-        // It fails where there is friction.
-        if let Ok(undamped) = undamped {
-            *self = undamped;
-        }
-        Ok(())
-    }
 }
 
-/// The same batch in the arithmetic with friction, or in that without: both have one snapshot.
-fn converted<A: Arithmetic, B: Arithmetic>(many: &Many<A>) -> PyResult<Many<B>> {
-    load(&to_bytes(many)?)
-}
-
-/// Does something with the batch in an engine, whatever its arithmetic and task.
+/// Does something with the batch in an engine, whatever its arithmetic.
 macro_rules! with_batch {
     ($engine:expr, $many:ident => $result:expr) => {
         match $engine {
-            $crate::engine::Engine::Fast($many) => $result,
-            $crate::engine::Engine::DampedFast($many) => $result,
-            $crate::engine::Engine::Host($many) => $result,
-            $crate::engine::Engine::Swingup($many) => $result,
-            $crate::engine::Engine::Balance($many) => $result,
-            $crate::engine::Engine::Reference($many) => $result,
-            $crate::engine::Engine::DampedReference($many) => $result,
-            $crate::engine::Engine::ReferenceSwingup($many) => $result,
-            $crate::engine::Engine::ReferenceBalance($many) => $result,
+            $crate::engine::Engine::Float32($many) => $result,
+            $crate::engine::Engine::Float64($many) => $result,
+            $crate::engine::Engine::Gymnasium($many) => $result,
         }
     };
 }
 pub(crate) use with_batch;
 
 /// A batch, and memory for its inputs. Numbers are `f64` outside, which `f32` becomes exactly.
-#[derive(Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Many<A: Arithmetic, T: Task = Gymnasium> {
-    pub batch: VecBatch<A, T>,
-    #[serde(skip)]
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(bound = "", into = "Saved<A>", try_from = "Saved<A>")]
+pub struct Many<A: Arithmetic> {
+    pub batch: VecBatch<A, AnyTask>,
     actions: Vec<u8>,
     /// Empty if the inputs of the next step are actions.
-    #[serde(skip)]
     torques: Vec<A::Scalar>,
 }
 
-impl<A: Arithmetic, T: Task> Many<A, T> {
-    pub fn new(len: usize, seed: SeedSequence) -> PyResult<Self> {
-        let batch = VecBatch::new(seed, len).map_err(out_of_memory)?;
+/// A batch in a snapshot.
+#[derive(Serialize, Deserialize)]
+#[serde(bound = "")]
+struct Saved<A: Arithmetic> {
+    task: AnyTask,
+    max_steps: NonZeroU32,
+    autoreset: Autoreset,
+    /// `None` if all acrobots share their parameters.
+    draws: Option<Params<Draw<A::Scalar>>>,
+    members: Vec<Member<A>>,
+}
+
+impl<A: Arithmetic> From<Many<A>> for Saved<A> {
+    fn from(Many { batch, .. }: Many<A>) -> Self {
+        Self {
+            task: *batch.task(),
+            max_steps: batch.max_steps(),
+            autoreset: batch.autoreset(),
+            draws: batch.has_own_params().then(|| *batch.draws().params()),
+            members: (0..batch.len()).filter_map(|index| batch.member(index)).collect(),
+        }
+    }
+}
+
+impl<A: Arithmetic> TryFrom<Saved<A>> for Many<A> {
+    type Error = Error;
+
+    fn try_from(
+        Saved { task, max_steps, autoreset, draws, members }: Saved<A>,
+    ) -> Result<Self, Error> {
+        let mut many = Self::new(task, members.len(), SeedSequence::new(0))?;
+        many.batch.set_max_steps(max_steps);
+        if let Some(first) = members.first() {
+            many.batch.set_params(first.params)?;
+        }
+        if draws.is_some() {
+            many.batch.own_params()?;
+        }
+        for (index, member) in members.into_iter().enumerate() {
+            many.batch.set_member(index, member)?;
+        }
+        many.batch.set_draws(draws.map_or(Ok(Draws::NONE), Draws::new)?)?;
+        many.batch.set_autoreset(autoreset);
+        Ok(many)
+    }
+}
+
+impl<A: Arithmetic> Many<A> {
+    fn new(task: AnyTask, len: usize, seed: SeedSequence) -> Result<Self, Error> {
+        let mut batch = VecBatch::new(seed, len)?;
+        batch.set_task(task);
+        batch.set_params(task.params().cast())?;
+        batch.set_reset_bounds(task.bounds());
         Ok(Self { batch, actions: Vec::new(), torques: Vec::new() })
     }
 
@@ -177,7 +178,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
         let count = if is_own { self.batch.len() } else { 1 };
         let mut each = Vec::with_capacity(count);
         // An acrobot alone tries them: a rejected value must change no acrobot of the batch.
-        let mut alone = Acrobot::<A, T>::new(0);
+        let mut alone = Acrobot::<A>::new(0);
         for (index, value) in values.iter().cycle().take(count).enumerate() {
             let index_in_name = (values.len() > 1).then_some(index);
             let name = Name(name, [index_in_name, None]);
@@ -253,19 +254,18 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
                     let [a, b, c] = params.torques.map(Real::to_f64);
                     (a.min(b).min(c), a.max(b).max(c))
                 };
-                let first = bounds(0);
+                let (first, task) = (bounds(0), *self.batch.task());
                 read(
                     from.as_slice()?,
                     &mut self.torques,
                     |torque| !torque.is_nan(),
                     |index, torque| {
                         let (low, high) = if is_own { bounds(index) } else { first };
-                        A::Scalar::from_f64(torque_of(T::NAME, torque.into(), low, high))
+                        A::Scalar::from_f64(task.torque(torque.into(), low, high))
                     },
-                    if T::NAME == Swingup::NAME {
-                        "a number from -1 to 1"
-                    } else {
-                        "a number, N m"
+                    match task {
+                        AnyTask::Swingup => "a number from -1 to 1",
+                        _ => "a number, N m",
                     },
                 )
             }
@@ -273,11 +273,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
     }
 
     /// Steps on this thread, or on all threads of rayon's current pool, into the buffers.
-    pub fn step(
-        &mut self,
-        buffers: StepBuffers<'_, T::Observation>,
-        parallel: bool,
-    ) -> Result<(), Error> {
+    pub fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
         let (actions, torques) = (&self.actions, &self.torques);
         match (torques.is_empty(), parallel) {
             (true, false) => self.batch.step_into(actions, buffers),
@@ -304,25 +300,11 @@ fn read<T: Copy + std::fmt::Display, U>(
         return Err(InvalidAction::new_err(must_be(&name, rule, input)));
     }
     to.clear();
-    reserve(to, from.len())?;
     to.extend(from.iter().enumerate().map(|(index, &input)| convert(index, input)));
     Ok(())
 }
 
-/// `len` copies of a value.
-pub fn memory<T: Clone>(value: T, len: usize) -> PyResult<Vec<T>> {
-    let mut memory = Vec::new();
-    reserve(&mut memory, len)?;
-    memory.resize(len, value);
-    Ok(memory)
-}
-
-fn reserve<T>(memory: &mut Vec<T>, len: usize) -> PyResult<()> {
-    let no_memory = |_| PyMemoryError::new_err("a step does not fit into memory");
-    memory.try_reserve_exact(len).map_err(no_memory)
-}
-
-fn out_of_memory(error: Error) -> PyErr {
+pub fn out_of_memory(error: Error) -> PyErr {
     match error {
         Error::OutOfMemory { len } => {
             let rule = "so few that they fit into memory";

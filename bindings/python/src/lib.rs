@@ -5,14 +5,15 @@ mod control;
 mod engine;
 mod pool;
 mod single;
+mod task;
 
 use std::fmt::{self, Display, Formatter};
 
 use acrobot::arithmetic::{Damped, Host, Real};
-use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
-use acrobot::physics::Dynamics;
+use acrobot::physics::{Dynamics, Pendulum};
+use acrobot::render::{Figure, Frame};
 use acrobot::task::{Balance, Gymnasium, ResetBounds, Swingup, Task};
-use acrobot::{Acrobot, Error, Params, State};
+use acrobot::{Error, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
@@ -26,8 +27,6 @@ pyo3::import_exception!(gymnasium.error, InvalidAction);
 
 #[pymodule(gil_used = false)]
 mod _native {
-    #[pymodule_export]
-    const BUSY: &str = super::BUSY;
     #[pymodule_export]
     const REWARD_THRESHOLD: f32 = acrobot::REWARD_THRESHOLD;
     #[pymodule_export]
@@ -64,20 +63,6 @@ const BUSY: &str = "another thread is stepping or resetting an environment; \
 fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<PyRefMut<'py, T>> {
     let busy = |_| PyRuntimeError::new_err(BUSY);
     object.try_borrow_mut().map_err(busy)
-}
-
-/// The torque of a continuous action, N m, which is within the smallest and the largest torque.
-/// In a swing-up the action 1 is the largest torque, −1 the smallest and 0 none. In other tasks
-/// actions are torques.
-fn torque_of(task: &str, action: f64, low: f64, high: f64) -> f64 {
-    let torque = match task {
-        Swingup::NAME => match action.clamp(-1.0, 1.0) {
-            action if action < 0.0 => action * -low,
-            action => action * high,
-        },
-        _ => action,
-    };
-    torque.max(low).min(high)
 }
 
 /// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both
@@ -220,36 +205,33 @@ fn render<'py>(
     state: State,
     mode: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let mode = match mode {
-        "rgb_array" => RenderMode::RgbArray,
-        _ => RenderMode::Ansi,
-    };
-    let mut env = AcrobotEnv::new(Acrobot::<Damped<Host>>::new(0), mode);
-    env.set_params(params).map_err(rejected)?;
-    env.set_state(state).map_err(rejected)?;
-    match env.render().map_err(rejected)? {
-        Rendering::Frame(frame) => {
-            let shape = [frame.height() as usize, frame.width() as usize, 3];
-            let array = PyArray1::from_slice(py, frame.bytes()).reshape(shape)?;
-            Ok(array.into_any())
-        }
-        Rendering::Text(text) => Ok(text.into_pyobject(py)?.into_any()),
-        // The other modes return no picture, and were rejected above.
-        _ => Ok(py.None().into_bound(py)),
+    let figure = Figure::of(&Pendulum::<Damped<Host>>::new(params, state).map_err(rejected)?);
+    if mode == "rgb_array" {
+        let frame = Frame::of(&figure);
+        let shape = [frame.height() as usize, frame.width() as usize, 3];
+        return Ok(PyArray1::from_slice(py, frame.bytes()).reshape(shape)?.into_any());
     }
+    let [theta1, theta2, dtheta1, dtheta2] = <[f64; 4]>::from(state);
+    let angles = format!("θ1 {theta1:+.2}  θ2 {theta2:+.2} rad");
+    let velocities = format!("θ̇1 {dtheta1:+.2}  θ̇2 {dtheta2:+.2} rad/s");
+    let text = format!("{}\n{angles}  {velocities}\n", figure.braille());
+    Ok(text.into_pyobject(py)?.into_any())
 }
 
-/// Serializes a snapshot, for pickle. The crate's snapshots inside have a version.
+/// Changes when a snapshot of another layout would be read.
+const SNAPSHOT_VERSION: u8 = 5;
+
+/// Serializes a snapshot, for pickle.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {
-    Ok(PyBytes::new(py, &to_bytes(snapshot)?))
-}
-
-fn to_bytes(snapshot: &impl Serialize) -> PyResult<Vec<u8>> {
-    postcard::to_stdvec(snapshot).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    let bytes = postcard::to_stdvec(&(SNAPSHOT_VERSION, snapshot));
+    Ok(PyBytes::new(py, &bytes.map_err(|error| PyRuntimeError::new_err(error.to_string()))?))
 }
 
 /// Deserializes a snapshot.
 fn load<T: DeserializeOwned>(bytes: &[u8]) -> PyResult<T> {
-    postcard::from_bytes(bytes)
-        .map_err(|error| PyValueError::new_err(format!("the snapshot is damaged: {error}")))
+    match postcard::from_bytes(bytes) {
+        Ok((SNAPSHOT_VERSION, snapshot)) => Ok(snapshot),
+        Ok(_) => Err(PyValueError::new_err("the snapshot is of another version")),
+        Err(error) => Err(PyValueError::new_err(format!("the snapshot is damaged: {error}"))),
+    }
 }

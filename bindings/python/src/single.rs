@@ -1,33 +1,26 @@
 //! The single environments: one acrobot, bit-identical to Gymnasium's, or of another task.
 
-use acrobot::arithmetic::{Arithmetic, Damped, Host};
-use acrobot::task::{Balance, Gymnasium, Swingup, Task};
+use acrobot::arithmetic::{Damped, Host};
+use acrobot::task::{Balance, Swingup};
 use acrobot::{Portable, State, Step};
-use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
+use crate::task::AnyTask;
 use crate::{
     InvalidAction, Name, Params, alone, convert, invalid, load, must_be, named, rejected, render,
-    save, shown, torque_of, with,
+    save, shown, with,
 };
 
 pyo3::import_exception!(gymnasium.error, ResetNeeded);
 
-/// One acrobot: its parameters and its state. Random numbers come from the environment's generator.
-#[pyclass(module = "acrobot_rs._native")]
-pub struct Acrobot {
-    pub inner: Inner,
-    /// The array that Python has as the state, since the last step. Its elements can be assigned.
-    lent: Option<Py<PyAny>>,
-}
-
 /// An acrobot of a task.
 #[derive(Clone, Serialize, Deserialize)]
 pub enum One {
-    Acrobot(acrobot::Acrobot<Damped<Host>>),
+    Gymnasium(acrobot::Acrobot<Damped<Host>>),
     Swingup(acrobot::Acrobot<Damped<Portable>, Swingup>),
     Balance(acrobot::Acrobot<Damped<Portable>, Balance>),
 }
@@ -36,7 +29,7 @@ pub enum One {
 macro_rules! with_one {
     ($one:expr, $acrobot:ident => $result:expr) => {
         match $one {
-            One::Acrobot($acrobot) => $result,
+            One::Gymnasium($acrobot) => $result,
             One::Swingup($acrobot) => $result,
             One::Balance($acrobot) => $result,
         }
@@ -45,19 +38,19 @@ macro_rules! with_one {
 
 impl One {
     fn new(task: &str) -> Self {
-        match task {
-            Swingup::NAME => Self::Swingup(acrobot::Acrobot::new(0)),
-            Balance::NAME => Self::Balance(acrobot::Acrobot::new(0)),
-            _ => Self::Acrobot(acrobot::Acrobot::new(0)),
+        match AnyTask::named(task) {
+            AnyTask::Gymnasium => Self::Gymnasium(acrobot::Acrobot::new(0)),
+            AnyTask::Swingup => Self::Swingup(acrobot::Acrobot::new(0)),
+            AnyTask::Balance => Self::Balance(acrobot::Acrobot::new(0)),
         }
     }
 
-    /// The name of the task.
-    fn task(&self) -> &'static str {
-        fn name<A: Arithmetic, T: Task>(_: &acrobot::Acrobot<A, T>) -> &'static str {
-            T::NAME
+    fn task(&self) -> AnyTask {
+        match self {
+            Self::Gymnasium(_) => AnyTask::Gymnasium,
+            Self::Swingup(_) => AnyTask::Swingup,
+            Self::Balance(_) => AnyTask::Balance,
         }
-        with_one!(self, acrobot => name(acrobot))
     }
 
     pub fn params(&self) -> Params {
@@ -81,9 +74,10 @@ impl One {
     }
 }
 
-/// What a snapshot contains.
+/// One acrobot: its parameters and its state. Random numbers come from the environment's generator.
+#[pyclass(module = "acrobot_rs._native")]
 #[derive(Clone, Serialize, Deserialize)]
-pub struct Inner {
+pub struct Acrobot {
     /// Whether actions are torques.
     continuous: bool,
     /// Without noise and with the default torques: the crate has three.
@@ -92,11 +86,9 @@ pub struct Inner {
     noise: f64,
     /// Whether the state was set or reset: Gymnasium's environment has none before the first reset.
     started: bool,
-    /// Whether the state is an array of `f32`, as Gymnasium's after a reset.
-    single: bool,
 }
 
-impl Inner {
+impl Acrobot {
     /// Checks the torques and the noise.
     fn validate(&self) -> PyResult<()> {
         if self.torques.is_empty() {
@@ -120,68 +112,43 @@ impl Acrobot {
     #[pyo3(signature = (continuous = false, task = "acrobot"))]
     fn new(continuous: bool, task: &str) -> Self {
         let acrobot = One::new(task);
-        let inner = Inner {
-            continuous,
-            torques: acrobot.params().torques.into(),
-            acrobot,
-            noise: 0.0,
-            started: false,
-            single: false,
-        };
-        Self { inner, lent: None }
+        let torques = acrobot.params().torques.into();
+        Self { continuous, acrobot, torques, noise: 0.0, started: false }
     }
 
     fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let mut this = alone(slf)?;
-        let mut inner = this.inner.clone();
+        let mut changed = this.clone();
         match name {
-            "AVAIL_TORQUE" => inner.torques = convert(name, "a sequence of numbers", value)?,
-            "torque_noise_max" => inner.noise = convert(name, "a number", value)?,
+            "AVAIL_TORQUE" => changed.torques = convert(name, "a sequence of numbers", value)?,
+            "torque_noise_max" => changed.noise = convert(name, "a number", value)?,
             _ => {
-                let params = with::<f64>(inner.acrobot.params(), Name(name, [None; 2]), value)?;
-                inner.acrobot.set_params(params)?;
+                let params = with::<f64>(changed.acrobot.params(), Name(name, [None; 2]), value)?;
+                changed.acrobot.set_params(params)?;
             }
         }
-        inner.validate()?;
-        this.inner = inner;
+        changed.validate()?;
+        *this = changed;
         Ok(())
     }
 
-    /// The state, as an array whose elements can be assigned until the next step.
     #[getter]
-    fn state<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let py = slf.py();
-        let Self { inner, lent } = &mut *alone(slf)?;
-        if !inner.started {
-            return Ok(None);
-        }
-        let lent = lent.get_or_insert_with(|| {
-            let state: [f64; 4] = inner.acrobot.state().into();
-            let array = if inner.single {
-                PyArray1::from_slice(py, &state.map(|x| x as f32)).into_any()
-            } else {
-                PyArray1::from_slice(py, &state).into_any()
-            };
-            array.unbind()
-        });
-        Ok(Some(lent.bind(py).clone()))
+    fn state(slf: &Bound<'_, Self>) -> PyResult<Option<[f64; 4]>> {
+        let this = alone(slf)?;
+        Ok(this.started.then(|| this.acrobot.state().into()))
     }
 
-    /// Sets the state from an array of `f32` or `f64`.
     #[setter]
-    fn set_state(slf: &Bound<'_, Self>, state: &Bound<'_, PyAny>) -> PyResult<()> {
-        let (state, single) = read(state)?;
+    fn set_state(slf: &Bound<'_, Self>, state: [f64; 4]) -> PyResult<()> {
         let mut this = alone(slf)?;
-        this.inner.acrobot.set_state(state)?;
-        this.inner.started = true;
-        this.inner.single = single;
-        this.lent = None;
+        this.acrobot.set_state(state.into())?;
+        this.started = true;
         Ok(())
     }
 
     fn observation<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let this = alone(slf)?;
-        let observation = with_one!(&this.inner.acrobot, acrobot => acrobot.observation());
+        let observation = with_one!(&this.acrobot, acrobot => acrobot.observation());
         Ok(PyArray1::from_slice(slf.py(), &observation))
     }
 
@@ -193,23 +160,22 @@ impl Acrobot {
         action: &Bound<'py, PyAny>,
     ) -> PyResult<impl IntoPyObject<'py>> {
         let py = slf.py();
-        let continuous = alone(slf)?.inner.continuous;
+        let continuous = alone(slf)?.continuous;
         // The conversion can be Python code.
         let number = continuous.then(|| number(env, action)).transpose()?;
         let mut this = alone(slf)?;
-        if !this.inner.started {
+        if !this.started {
             let message = "the environment has no state yet; call reset before step";
-            return Err(match this.inner.acrobot.task() {
-                Gymnasium::NAME => PyAssertionError::new_err(message), // as Gymnasium's
+            return Err(match this.acrobot.task() {
+                AnyTask::Gymnasium => PyAssertionError::new_err(message), // as Gymnasium's
                 _ => ResetNeeded::new_err(message),
             });
         }
-        this.read_lent(py)?;
         let mut torque = match number {
             Some(torque) => this.clipped(torque),
             None => this.torque(action)?,
         };
-        let noise = this.inner.noise;
+        let noise = this.noise;
         if noise > 0.0 {
             drop(this); // the generator is Python code
             let rng = env.getattr("np_random")?;
@@ -217,17 +183,14 @@ impl Acrobot {
             torque += draw;
             this = alone(slf)?;
         }
-        let step = this.inner.acrobot.step(torque)?;
-        this.lent = None;
-        this.inner.single = false;
+        let step = this.acrobot.step(torque)?;
         let observation = PyArray1::from_slice(py, &step.observation);
         Ok((observation, f64::from(step.reward), step.terminated, false, PyDict::new(py)))
     }
 
     fn render<'py>(slf: &Bound<'py, Self>, mode: &str) -> PyResult<Bound<'py, PyAny>> {
-        let mut this = alone(slf)?;
-        this.read_lent(slf.py())?;
-        let acrobot = &this.inner.acrobot;
+        let this = alone(slf)?;
+        let acrobot = &this.acrobot;
         render(slf.py(), acrobot.params(), acrobot.state(), mode)
     }
 
@@ -237,46 +200,35 @@ impl Acrobot {
     }
 
     fn __getstate__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
-        let mut this = alone(slf)?;
-        this.read_lent(slf.py())?;
-        save(slf.py(), &this.inner)
+        save(slf.py(), &*alone(slf)?)
     }
 
     fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
-        let inner: Inner = load(bytes)?;
-        inner.validate()?;
-        *alone(slf)? = Self { inner, lent: None };
+        let loaded: Self = load(bytes)?;
+        loaded.validate()?;
+        *alone(slf)? = loaded;
         Ok(())
     }
 }
 
 impl Acrobot {
-    /// Takes over what Python assigned to elements of the state.
-    fn read_lent(&mut self, py: Python<'_>) -> PyResult<()> {
-        if let Some(lent) = &self.lent {
-            let (state, _) = read(lent.bind(py))?;
-            self.inner.acrobot.set_state(state)?;
-        }
-        Ok(())
-    }
-
     /// The torque of an action, N m.
     #[inline]
     fn torque(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
         let number = action.extract::<usize>().ok();
-        let torque = number.and_then(|number| self.inner.torques.get(number));
+        let torque = number.and_then(|number| self.torques.get(number));
         torque.copied().ok_or_else(|| {
-            let rule = format_args!("an integer from 0 to {}", self.inner.torques.len() - 1);
+            let rule = format_args!("an integer from 0 to {}", self.torques.len() - 1);
             InvalidAction::new_err(must_be("action", rule, shown(action)))
         })
     }
 
     /// The torque of a continuous action, N m.
     fn clipped(&self, action: f64) -> f64 {
-        let torques = &self.inner.torques;
+        let torques = &self.torques;
         let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
         let high = torques.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        torque_of(self.inner.acrobot.task(), action, low, high)
+        self.acrobot.task().torque(action, low, high)
     }
 }
 
@@ -291,18 +243,4 @@ fn number(env: &Bound<'_, PyAny>, action: &Bound<'_, PyAny>) -> PyResult<f64> {
         return Ok(torque.into());
     }
     env.call_method1("_torque", (action,))?.extract()
-}
-
-/// A state from an array, and whether its numbers are `f32`.
-fn read(state: &Bound<'_, PyAny>) -> PyResult<(State, bool)> {
-    fn numbers<T: Element + Copy + Into<f64>>(state: &Bound<'_, PyAny>) -> Option<State> {
-        let array = state.cast::<PyArray1<T>>().ok()?.try_readonly().ok()?;
-        let numbers: [T; 4] = array.as_slice().ok()?.try_into().ok()?;
-        Some(numbers.map(Into::into).into())
-    }
-    let single = numbers::<f32>(state).map(|numbers| (numbers, true));
-    let read = single.or_else(|| Some((numbers::<f64>(state)?, false)));
-    read.ok_or_else(|| {
-        PyValueError::new_err(must_be("state", "an array of four numbers", shown(state)))
-    })
 }

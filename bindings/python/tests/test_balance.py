@@ -1,10 +1,8 @@
 """The task to stay upright. The program `bits` compares its bits in Rust."""
 
-import gymnasium
 import numpy as np
 import pytest
 from acrobot_rs import AcrobotBalanceEnv, AcrobotBalanceVectorEnv
-from vectors import BALANCE
 
 
 @pytest.mark.parametrize(("bound", "options"), [(0.05, {}), (0.2, {"low": -0.2, "high": 0.2})])
@@ -16,11 +14,3 @@ def test_episodes_begin_near_upright_alone_and_among_many(bound, options):
     assert np.abs(one[0] - many[0][1]).max() < 1e-6
     one, many = env.step([-3.0]), envs.step([[0.0], [-3.0]])
     assert np.abs(np.append(one[0] - many[0][1], one[1] - many[1][1])).max() < 1e-6
-
-
-def test_no_state_ends_an_episode():
-    """It falls."""
-    env = gymnasium.make(BALANCE)
-    env.reset(seed=1)
-    steps = [env.step([0.0]) for _ in range(500)]
-    assert not any(step[2] for step in steps) and min(step[1] for step in steps) < 0.5

@@ -37,7 +37,7 @@ def test_simulate_has_the_bits_of_an_environment(env):
 
 def test_regulators_are_those_of_python_control_and_scipy():
     rng = np.random.default_rng(0)
-    for _ in range(200):
+    for _ in range(50):
         A, B = control.linearize_step(rng.uniform(-1, 1, 4), 0.5, ENV)
         factor = rng.normal(size=(4, 4))
         Q, R = factor @ factor.T + ONE, rng.uniform(0.1, 1)
@@ -89,9 +89,8 @@ def test_errors_say_what_is_valid(function, arguments, message):
         getattr(control, function)(*arguments)
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.1])
-def test_a_plan_swings_an_environment_up_from_a_nearby_state(friction):
-    env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, FRICTION_1=friction, AVAIL_TORQUE=(-8, 0, 8))
+def test_a_plan_swings_an_environment_up_from_a_nearby_state():
+    env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, FRICTION_1=0.1, AVAIL_TORQUE=(-8, 0, 8))
     planner = control.Planner(6.0, env)
     plan = planner.plan([0, 0, 0, 0], steps=250)
     env.reset(options={"state": [0.05, -0.05, 0.1, 0.1]})
@@ -117,6 +116,8 @@ def test_a_plan_has_the_bits_of_rust():
 
 def test_a_search_can_be_interrupted_or_find_no_plan():
     planner, calls = control.Planner(1e-3), []
+    with pytest.raises(ValueError, match="steps must be an integer from 0 to 65535, got 65536"):
+        planner.plan([0, 0, 0, 0], steps=2**16)
     with pytest.raises(RuntimeError, match="found no plan that ends upright in 41 tries"):
         planner.plan([0, 0, 0, 0], steps=50, tries=41, progress=calls.append)
     assert calls == [40, 41]

@@ -47,11 +47,8 @@ def test_draws_are_those_of_numpy(children):
 ROWS = [json.loads(line) for line in (DATA / "rejections.jsonl").read_text().splitlines()]
 #: The crate's names of the numbers without indices, and Python's.
 CRATES = [name.split("[")[0] for row in ROWS if row["call"] == "params" for name in row["set"]]
-NAMES = dict(zip(dict.fromkeys(CRATES), (
-    *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1"),
-    *("LINK_COM_POS_2", "LINK_MOI_1", "LINK_MOI_2", "gravity", "dt", "MAX_VEL_1", "MAX_VEL_2"),
-    *("AVAIL_TORQUE", "torque_noise_max", "FRICTION_1", "FRICTION_2"),
-), strict=True))  # fmt: skip
+PYTHONS = [name for name in AcrobotEnv._NAMES if name not in ("LINK_MOI", "book_or_nips")]
+NAMES = dict(zip(dict.fromkeys(CRATES), PYTHONS, strict=True))
 STATE = ["theta1", "theta2", "dtheta1", "dtheta2"]
 MANY = functools.partial(AcrobotVectorEnv, 3)
 MAKERS = (

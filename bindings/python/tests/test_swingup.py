@@ -73,14 +73,6 @@ def test_a_vector_environment_is_near_or_as_near(name, column, float64):
     assert not terminated.any() and not truncated.any()
 
 
-def test_the_observation_space_contains_all_observations():
-    envs = AcrobotSwingupVectorEnv(num_envs=1024, MAX_VEL_1=1e-3)
-    envs.action_space.seed(1)
-    for seed in range(30):
-        assert envs.observation_space.contains(envs.reset(seed=seed)[0])
-        assert envs.observation_space.contains(envs.step(envs.action_space.sample())[0])
-
-
 @pytest.mark.parametrize(("low", "high"), [(-np.pi, np.pi), (-0.2, 0.1)])
 def test_episodes_begin_at_rest_at_angles_within_the_bounds(low, high):
     env, envs = AcrobotSwingupEnv(), AcrobotSwingupVectorEnv(400)
@@ -95,14 +87,12 @@ def test_episodes_begin_at_rest_at_angles_within_the_bounds(low, high):
 
 def test_wrong_actions_are_rejected():
     env, envs = AcrobotSwingupEnv(), AcrobotSwingupVectorEnv(2)
-    assert env.state is None
     with pytest.raises(ResetNeeded, match="call reset"):
         env.step([0.0])
     for each in env, envs:
         each.reset(seed=0)
-    for action in 0.5, [np.nan]:
-        with rejects(env, InvalidAction, "action must be a number from -1 to 1, as an array"):
-            env.step(action)
+    with rejects(env, InvalidAction, "action must be a number from -1 to 1, as an array"):
+        env.step([np.nan])
     with rejects(envs, InvalidAction, r"actions\[1\] must be a number from -1 to 1, got NaN"):
         envs.step([[0.0], [np.nan]])
 

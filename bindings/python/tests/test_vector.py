@@ -1,6 +1,5 @@
 """The vector environment is used as SyncVectorEnv is."""
 
-import contextlib
 import multiprocessing
 import pickle
 import subprocess
@@ -25,45 +24,25 @@ def test_attributes_and_types_are_those_of_sync_vector_env():
     assert repr(ours) == "AcrobotVectorEnv(acrobot_rs/Acrobot-v1, num_envs=5)"
     assert ours.unwrapped is ours and ours.spec.max_episode_steps == 500
     for mode in AutoresetMode:
-        envs = make_vec(5, autoreset_mode=mode)
-        assert envs.metadata["autoreset_mode"] is mode
-        observations, infos = envs.reset(seed=1)
-        assert observations in envs.observation_space and infos == {}
-        observations, rewards, terminated, truncated, infos = envs.step(envs.action_space.sample())
-        assert observations in envs.observation_space and infos == {}
-        for signals in (rewards, terminated, truncated):
-            assert signals.shape == (5,)
-        assert rewards.dtype == np.float32 and terminated.dtype == truncated.dtype == np.bool_
+        assert make_vec(5, autoreset_mode=mode).metadata["autoreset_mode"] is mode
     assert AcrobotVectorEnv.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
-
-
-def test_observations_are_copies_or_one_array():
-    for copies in (True, False):
-        envs = make_vec(4, copy=copies)
-        first, _ = envs.reset(seed=1)
-        second = envs.step([0, 1, 2, 0])[0]
-        third = envs.step([0, 1, 2, 0])[0]
-        fourth, _ = envs.reset()
-        for one, other in [(first, second), (second, third), (third, fourth)]:
-            assert np.shares_memory(one, other) != copies
-            assert (one != other).any() == copies
+    assert ours.reset()[0] is not ours.reset()[0], "a copy"
 
 
 @pytest.mark.parametrize(
     ("kind", "actions"),
     [
         (AcrobotVectorEnv,
-         [[0, 1, 2, 3], [0, 0, 0, -1], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]],
-          [0.0, 1.0, 2.0, 0.0], 1, [True] * 4, b"\0\1\2\0"]),
+         [[0, 1, 2, 3], [2**32] * 4, [0, 1, 2], [0.0, 1.0, 2.0, 0.0], 1, [True] * 4]),
         (AcrobotContinuousVectorEnv,
-         [[[0.5]], [0.5] * 4, [[0.5, 0.5]] * 4, [[np.nan], [0.0], [0.0], [0.0]], [["0"]] * 4,
-          [[True]] * 4, [[1j]] * 4, np.zeros(4, np.float32), np.zeros((4, 1), object)]),
+         [[[0.5]], [0.5] * 4, [[np.nan], [0.0], [0.0], [0.0]], [["0"]] * 4, [[True]] * 4,
+          np.zeros(4, np.float32), np.zeros((4, 1), object)]),
     ],
 )  # fmt: skip
 def test_invalid_actions_are_rejected(kind, actions):
     envs = kind(4)
     envs.reset(seed=1)
-    message = r"actions must be \w+ of shape \(4, ?1?\), got |actions\[\d\] must be (0|a number)"
+    message = r"^actions(\[\d\])? must be (\w+ of shape \(4, ?1?\)|0|a number)"
     for each in actions:
         with rejects(envs, InvalidAction, message):
             envs.step(each)
@@ -96,30 +75,19 @@ def test_invalid_arguments_are_rejected(name, value):
         AcrobotVectorEnv(**{"num_envs": 2, "gymnasium_episodes": name == "float64", name: value})
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        ("acrobot_rs.AcrobotVectorEnv(2**32 - 1)", "num_envs must be so few that they fit into"),
-        ("batch.step(None, actions, observations)", "a step does not fit into memory"),
-    ],
-)
-def test_a_call_that_does_not_fit_into_memory_raises(call, message):
-    """In a process that may use 256 KB more than it has when the call begins."""
-    code = f"""if True:
+def test_environments_that_do_not_fit_into_memory_are_rejected():
+    """In a process that may use 4 GB."""
+    code = """if True:
         import resource
         import acrobot_rs
-        import numpy as np
-        batch = acrobot_rs._native.Batch(500_000)
-        actions, observations = np.zeros(500_000, np.int64), np.empty((500_000, 6), np.float32)
-        pages = int(open("/proc/self/statm").read().split()[0])
-        resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + 2**18,) * 2)
+        resource.setrlimit(resource.RLIMIT_AS, (2**32, 2**32))
         try:
-            {call}
+            acrobot_rs.AcrobotVectorEnv(2**32 - 1)
         except MemoryError as error:
             print(error)
     """
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert run.returncode == 0 and run.stdout.startswith(message), run.stderr
+    assert run.stdout.startswith("num_envs must be so few that they fit into"), run.stderr
 
 
 def test_pictures_are_those_of_single_environments():
@@ -137,20 +105,16 @@ def test_states_can_be_set(gymnasium_episodes):
     envs = make_vec(40, gymnasium_episodes=gymnasium_episodes)
     envs.reset(seed=1)
     envs.step([2] * 40)
-    before, elapsed = envs._native.__getstate__(), envs.elapsed_steps
-    envs.state = envs.state
-    assert envs._native.__getstate__() == before
-    states = envs.state.copy()
+    elapsed, states = envs.elapsed_steps, envs.state.copy()
     assert states.dtype == (np.float64 if gymnasium_episodes else np.float32)
-    states[3] = 1.0, -1.0, 0.5, 300.0
-    states[5] = 7.0, 0.0, 0.0, 0.0
+    states[3] = 7.0, -1.0, 0.5, 300.0
     envs.state = states
     assert (envs.state == states).all() and (envs.elapsed_steps == elapsed).all()
     for array in (envs.state, envs.elapsed_steps):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1
-    with rejects(envs, ValueError, "state must be num"):
-        envs.state = states[0]
+    with rejects(envs, ValueError, r"state must be numbers of shape \(40, 4\) or \(4,\), got"):
+        envs.state = states[:2]
     beyond = states.astype(float)
     beyond[39, 3] = 1e39
     if gymnasium_episodes:
@@ -175,9 +139,6 @@ def test_torques_are_those_of_actions(gymnasium_episodes):
             for actions in np.random.default_rng(0).integers(3, size=(70, 30)):
                 chosen = kind[np.arange(30), actions][:, None]
                 assert_equal(discrete.step(actions), torques.step(chosen))
-    discrete.step([0] * 30)
-    torques.step(np.full((30, 1), 0.5))
-    assert (discrete.state != torques.state).any()
 
 
 @pytest.mark.parametrize(
@@ -219,12 +180,6 @@ def test_threads_in_a_forked_process():
         child.join()
 
 
-BUSY = (
-    "another thread is stepping or resetting an environment; change parameters and "
-    "call methods between its steps, or make an environment for each thread"
-)
-
-
 @pytest.mark.parametrize("kind", [AcrobotEnv, AcrobotVectorEnv])
 def test_a_call_of_another_thread_during_a_call_is_rejected(kind):
     """A step of many lets other threads run, and so does this conversion of a number."""
@@ -240,33 +195,9 @@ def test_a_call_of_another_thread_during_a_call_is_rejected(kind):
             return 2.0
 
     env._native.set("LINK_MASS_1", Mass() if kind is AcrobotEnv else [Mass()])
-    assert [(type(each), str(each)) for each in errors] == [(RuntimeError, BUSY)] * 5
+    assert [type(each) for each in errors] == [RuntimeError] * 5
+    assert all(str(each).startswith("another thread is stepping or") for each in errors)
     assert env.dt == 0.2
-
-
-@pytest.mark.parametrize("arguments", [None, {"copy": True}, {"copy": False}])
-def test_threads_that_share_an_environment_step_one_after_the_other_or_not(arguments):
-    """Also without Python's lock: the steps that raised no error are those that were made."""
-    if arguments is None:
-        env, twin, action = AcrobotEnv(), AcrobotEnv(), 2
-    else:
-        env, twin, action = make_vec(100, **arguments), make_vec(100), [2] * 100
-    for each in env, twin:
-        each.reset(seed=1)
-
-    def play(_):
-        steps = 0
-        for _ in range(500):
-            with contextlib.suppress(RuntimeError):
-                env.step(action)
-                steps += 1
-        return steps
-
-    with ThreadPoolExecutor(4) as executor:
-        steps = sum(executor.map(play, range(4)))
-    for _ in range(steps):
-        twin.step(action)
-    assert steps > 100 and env._native.__getstate__() == twin._native.__getstate__()
 
 
 def test_steps_in_float64_are_gymnasiums_but_for_rounding():
@@ -276,6 +207,7 @@ def test_steps_in_float64_are_gymnasiums_but_for_rounding():
         each.reset(seed=0)
         each.state = states
     found, expected = (each.step(np.arange(500) % 3) for each in (envs, twin))
+    assert found[1].dtype == np.float32
     for one, other, bound in zip(found[:4], expected[:4], (1e-6, 0, 0, 0), strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=bound)
     assert np.abs(envs.state - twin.state).max() < 1e-12

@@ -3,7 +3,6 @@
 #![no_std]
 
 pub mod counter;
-pub mod episode;
 #[cfg(target_arch = "arm")]
 pub mod ram;
 pub mod stack;

@@ -1,7 +1,6 @@
 //! Code that several programs share.
 
 pub mod animation;
-pub mod search;
 
 use std::fs::{self, File};
 use std::io::Read;

@@ -1,7 +1,6 @@
 // One episode: its seed, parameters, actions and states.
 
 import { Acrobot } from "./acrobot-rs/index.js";
-import { LIMIT, textOf } from "./settings.js";
 
 export class Game {
   acrobot = new Acrobot();
@@ -65,61 +64,19 @@ export class Game {
     this.acrobot.state = state;
   }
 
-  /** The angles at a part of a step, by default of the last one. */
-  between(part, step = this.steps) {
-    const [before, after] = [this.#rows[Math.max(step - 1, 0)], this.#rows[step]];
+  /** The angles at a part of the last step. */
+  between(part) {
+    const after = this.numbers;
+    const before = this.#rows.at(-2) ?? after;
     const { dt } = this.params;
     const angle = (i) =>
       angleBetween(before[i], after[i], before[i + 2] * dt, after[i + 2] * dt, part);
     return { theta1: angle(0), theta2: angle(1) };
   }
 
-  /**
-   * Where the tip was in the last `seconds` before a part of the last step, at equal intervals of
-   * time, so that a trail does not depend on the frames: up to `count` points [x, y] in m, the
-   * newest first.
-   */
-  trail(part, seconds, count) {
-    const { dt, length1, length2 } = this.params;
-    const points = [];
-    for (let i = 0; i < count; i++) {
-      const time = this.steps - 1 + part - (i / count) * (seconds / dt);
-      if (time < 0) break;
-      const step = Math.min(Math.floor(time), this.steps - 1);
-      const { theta1, theta2 } = this.between(time - step, step + 1);
-      const angle = theta1 + theta2;
-      const x = length1 * Math.sin(theta1) + length2 * Math.sin(angle);
-      const y = -length1 * Math.cos(theta1) - length2 * Math.cos(angle);
-      points.push([x, y]);
-    }
-    return points;
-  }
-
   /** One of the six numbers, of the initial state and after each step. */
   column(index) {
     return Array.from(this.#rows, (row) => row[index]);
-  }
-
-  /** The transitions, with the columns of the crate's CSV. */
-  csv() {
-    const state = ["theta1 (rad)", "theta2 (rad)", "dtheta1 (rad/s)", "dtheta2 (rad/s)"];
-    const next = state.map((name) => `next ${name}`);
-    const names = ["step", ...state, "torque (N m)", "reward", ...next, "terminated", "truncated"];
-    const stateAt = (i) => Array.from(this.#rows[i].subarray(0, 4), shortest);
-    const lines = this.actions.map((action, i) => {
-      const terminated = Number(i + 1 === this.steps && this.end === "goal");
-      const rest = [...stateAt(i + 1), terminated, Number(i + 1 === LIMIT)];
-      return [i + 1, ...stateAt(i), action - 1, terminated - 1, ...rest];
-    });
-    return [names, ...lines].map((cells) => `${cells.join(",")}\n`).join("");
-  }
-}
-
-/** The shortest decimal that rounds to the same number in single precision. */
-export function shortest(number) {
-  for (let digits = 1; ; digits++) {
-    const text = number === 0 ? textOf(number) : String(Number(number.toPrecision(digits)));
-    if (digits === 17 || Math.fround(Number(text)) === number) return text;
   }
 }
 

@@ -1,6 +1,6 @@
 // A run in an address, after the #: seed, parameters that differ from Gymnasium's, and actions.
 
-import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed, quoted, textOf } from "./settings.js";
+import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed, textOf } from "./settings.js";
 
 export function encodeRun({ seed, params, actions }) {
   const fields = new URLSearchParams({ seed });
@@ -17,7 +17,8 @@ export function decodeRun(hash) {
   const known = ["seed", "dynamics", "actions", ...PARAMETERS.map(({ name }) => name)];
   const unknown = [...fields.keys()].find((name) => !known.includes(name));
   if (unknown !== undefined) {
-    throw new Error(`names in the link must be ${known.join(", ")}, got ${quoted(unknown)}`);
+    const rule = `names in the link must be ${known.join(", ")}`;
+    throw new Error(`${rule}, got ${JSON.stringify(unknown)}`);
   }
   const params = { ...DEFAULTS };
   for (const { name } of PARAMETERS) {
@@ -26,7 +27,8 @@ export function decodeRun(hash) {
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
   const actions = fields.get("actions") ?? "";
   if (!/^[012]*$/.test(actions) || actions.length > LIMIT) {
-    throw new Error(`actions must be at most ${LIMIT} of 0, 1 and 2, got ${quoted(actions)}`);
+    const rule = `actions must be at most ${LIMIT} of 0, 1 and 2`;
+    throw new Error(`${rule}, got ${JSON.stringify(actions)}`);
   }
   const seed = parseSeed(fields.get("seed") ?? "42");
   return { seed, params, actions: Array.from(actions, Number) };

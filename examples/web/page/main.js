@@ -7,7 +7,7 @@ import { attempt, parametersPanel } from "./parameters.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
 import { DEFAULTS, parseSeed } from "./settings.js";
 import { drawStage } from "./stage.js";
-import { download, trainingPanel } from "./training.js";
+import { trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -36,11 +36,6 @@ function start() {
   let nextAt = Infinity;
   /** The actions of a link. */
   let recorded = [];
-  /** The policies that have played this episode. */
-  const players = new Set();
-  /** The fewest steps to the goal, for each policy and set of parameters. */
-  const best = new Map();
-  const record = () => JSON.stringify([$("policy").value, game.params]);
   const held = { left: false, right: false };
 
   // ---- the episode
@@ -62,14 +57,9 @@ function start() {
     } catch (error) {
       return pause(minus(error.message)); // With extreme physics an energy is infinite.
     }
-    players.add($("policy").value);
     shown = 0;
     if (game.end === null) return;
-    const isGoal = game.end === "goal";
-    if (isGoal && players.size === 1) {
-      best.set(record(), Math.min(game.steps, best.get(record()) ?? Infinity));
-    }
-    const result = `${isGoal ? "Goal" : "Out of time"} after ${game.steps} steps.`;
+    const result = `${game.end === "goal" ? "Goal" : "Out of time"} after ${game.steps} steps.`;
     const continues = playing && !["keys", "link"].includes($("policy").value);
     if (continues) nextAt = performance.now() + INTERVAL;
     say(`${result} ${continues ? "The next seed follows." : "Press Restart or Next seed."}`);
@@ -79,12 +69,11 @@ function start() {
     game.begin(seed, params);
     shown = params.dt;
     nextAt = Infinity;
-    players.clear();
     $("seed").value = seed;
     attempt($("seed"), $("seed-reason"), () => {});
     $("link-field").hidden = true;
     address();
-    say(`Seed ${name(seed)}.${playing ? ` ${player()}` : ""}`);
+    say(`Seed ${seed}.${playing ? ` ${player()}` : ""}`);
     changed();
   };
   /** Puts the run into the address, so that loading the page again begins it. */
@@ -93,7 +82,7 @@ function start() {
 
   const reset = () => {
     begin(game.seed);
-    say(`Restarted from the initial state of seed ${name(game.seed)}.`);
+    say(`Restarted from the initial state of seed ${game.seed}.`);
   };
   const next = () => begin(game.seed + 1n);
 
@@ -120,8 +109,6 @@ function start() {
     changed();
   };
 
-  /** A seed as text. A long one is shortened to fit a sentence. */
-  const name = (seed) => (`${seed}`.length > 24 ? `${`${seed}`.slice(0, 20)}…` : `${seed}`);
   const say = (message) => ($("status").textContent = message);
 
   /** Who applies the torque, as a sentence. */
@@ -182,16 +169,9 @@ function start() {
     dirty = false;
     $("step").textContent = game.steps;
     $("return").textContent = minus(String(game.return));
-    $("best").textContent = best.get(record()) ?? "–";
-    const isOwn = $("policy").value === "keys";
-    $("best-label").textContent = isOwn ? "Your fewest steps" : "Fewest steps";
     $("pause").textContent = playing ? "Pause" : "Play";
     const verdicts = { goal: `Goal! ${game.steps} steps`, limit: "Out of time" };
     $("verdict").textContent = verdicts[game.end] ?? "";
-    const between = calm.matches
-      ? "Reduced motion: the picture moves step by step, without a trail."
-      : `The physics steps every ${game.params.dt} s. Between steps the picture is interpolated.`;
-    $("between").textContent = `The red arrow is the torque. ${between}`;
     const bits = new Uint32Array(game.numbers.buffer);
     const rows = ["θ1", "θ2", "θ1′", "θ2′"].map((name, i) => {
       const value = `${number(game.numbers[i], 4)} ${i < 2 ? "rad" : "rad/s"}`;
@@ -226,7 +206,7 @@ function start() {
       next();
       $("link-field").hidden = hidden;
     }
-    drawStage(game, calm.matches ? 1 : Math.min(shown / dt, 1), !calm.matches);
+    drawStage(game, calm.matches ? 1 : Math.min(shown / dt, 1));
     if (dirty) update();
   };
 
@@ -325,11 +305,10 @@ function start() {
       const { length } = recorded;
       document.querySelector("[value=link]").disabled = length === 0;
       choose(length > 0 ? "link" : "bang_bang");
-      if (length > 0) say(`Replay of a link: ${length} steps of seed ${name(run.seed)}.`);
+      if (length > 0) say(`Replay of a link: ${length} steps of seed ${run.seed}.`);
     } catch (error) {
       address();
-      // Only whole characters.
-      say(`The link is invalid: ${minus(error.message).replace(/^(.{200}).+/su, "$1…")}`);
+      say(`The link is invalid: ${minus(error.message)}`);
       $("status").scrollIntoView({ block: "nearest" });
     }
   };
@@ -349,13 +328,10 @@ function start() {
       shown(`The browser does not allow copying. Copy this link with ${content}`);
     }
   };
-  $("csv").onclick = () => download(`acrobot-${name(game.seed)}.csv`, game.csv());
 
   const training = trainingPanel(learner, {
     ready(policy) {
       learnt = policy;
-      // Those of the policy before.
-      for (const key of best.keys()) if (key.startsWith('["learnt"')) best.delete(key);
       const option = document.querySelector("[value=learnt]");
       option.disabled = false;
       option.textContent = "Learnt";
@@ -374,11 +350,6 @@ function start() {
     });
   }
   new ResizeObserver(changed).observe($("energy"));
-  // Where the style sheet has a small picture, it shows that once most of the large one is away.
-  // A slow page gets several changes at once.
-  const away = (changes) =>
-    $("stage").classList.toggle("small", changes.at(-1).intersectionRatio < 0.5);
-  new IntersectionObserver(away, { threshold: 0.5 }).observe($("frame"));
 
   const { hash } = location;
   showParams();

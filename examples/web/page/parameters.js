@@ -2,7 +2,7 @@
 // field shows why a value is rejected.
 
 import { minus } from "./plot.js";
-import { DEFAULTS, PARAMETERS, parseNumber, quoted, textOf } from "./settings.js";
+import { DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -39,20 +39,11 @@ export function parametersPanel(get, set) {
       const value = parseNumber(text.value);
       const isNew = !Object.is(value, get()[name]);
       attempt(text, reason, () => isNew && set({ ...get(), [name]: value }));
-      const given = quoted(text.value.trim());
-      reason.textContent = reason.textContent.replace(/(NaN|−?Infinity)$/, () => given);
     };
     slider.oninput = () => (text.value = slider.value);
-    // A held key changes the slider again and again. The episode restarts when it is released.
-    let held = false;
-    slider.onkeydown = () => (held = true);
-    slider.onchange = () => held || change();
+    slider.onchange = change;
     // So that ← and → are the torque again.
     slider.onpointerup = () => slider.blur();
-    slider.onkeyup = slider.onblur = () => {
-      held = false;
-      change();
-    };
     text.oninput = () => {
       if (Number.isFinite(parseNumber(text.value))) slider.value = text.value;
       change();

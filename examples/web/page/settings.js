@@ -20,13 +20,11 @@ export const DEFAULTS = {
   ...Object.fromEntries(PARAMETERS.map(({ name, value }) => [name, value])),
 };
 
-/** A text in an error message. */
-export const quoted = (text) => (text === "" ? "an empty text" : `"${text}"`);
-
 /** The seed in a text. Throws an `Error` with the reason if the text is not a seed. */
 export function parseSeed(text) {
-  if (/^[0-9]{1,600}$/.test(text.trim())) return BigInt(text);
-  throw new Error(`seed must have from 1 to 600 decimal digits, got ${quoted(text.trim())}`);
+  const digits = text.trim();
+  if (/^[0-9]{1,600}$/.test(digits)) return BigInt(digits);
+  throw new Error(`seed must have from 1 to 600 decimal digits, got ${JSON.stringify(digits)}`);
 }
 
 /** A number as text, which has the sign of a zero. */

@@ -3,7 +3,7 @@
 import { Perceptron } from "./acrobot-rs/policies.js";
 import { attempt } from "./parameters.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
-import { parseNumber, parseSeed, quoted } from "./settings.js";
+import { parseNumber, parseSeed } from "./settings.js";
 
 /** Solved, as Gymnasium defines it: a mean return of −100 over 100 episodes. */
 const WINDOW = 100;
@@ -17,7 +17,7 @@ const $ = (id) => document.getElementById(id);
 function parseEpisodes(text) {
   const episodes = parseNumber(text);
   if (Number.isInteger(episodes) && episodes >= 1 && episodes <= EPISODES) return episodes;
-  throw new Error(`episodes must be an integer from 1 to ${EPISODES}, got ${quoted(text)}`);
+  throw new Error(`episodes must be an integer from 1 to ${EPISODES}, got ${JSON.stringify(text)}`);
 }
 
 /** Calls `ready` with each learnt policy, and `drive` when the user wants to watch it. */
@@ -64,7 +64,6 @@ export function trainingPanel(learner, { ready, drive }) {
     const returns = [];
     let sum = 0;
     means = [];
-    const began = performance.now();
     worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
     worker.onerror = ({ message }) => stop(`the training failed: ${message}`);
     worker.onmessage = ({ data }) => {
@@ -75,7 +74,6 @@ export function trainingPanel(learner, { ready, drive }) {
       }
       take(data.weights);
       draw();
-      const rate = Math.round((returns.length / (performance.now() - began)) * 60_000);
       const mean = sum / Math.min(returns.length, WINDOW);
       const solved = means.findIndex((mean) => mean >= SOLVED);
       const text = [
@@ -83,7 +81,6 @@ export function trainingPanel(learner, { ready, drive }) {
         `mean return ${minus(mean.toFixed(1))}`,
         ...(means.length === 0 ? [`the curve begins after ${WINDOW} episodes`] : []),
         solved < 0 ? "not solved yet" : `solved at episode ${solved + WINDOW}`,
-        `${rate.toLocaleString("en")} episodes per minute`,
       ].join(" · ");
       $("training-status").textContent = text;
       if (returns.length === episodes) stop();
@@ -95,7 +92,14 @@ export function trainingPanel(learner, { ready, drive }) {
 
   $("train").onclick = () => (worker ? stop("stopped") : train());
   $("drive").onclick = drive;
-  $("save").onclick = () => download("weights.bin", weights);
+  $("save").onclick = () => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([weights]));
+    link.download = "weights.bin";
+    link.click();
+    // Later, because the browser may still be reading it.
+    setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  };
   $("choose").onclick = () => $("load").click();
   $("load").onchange = async ({ target }) => {
     const [file] = target.files;
@@ -114,13 +118,4 @@ export function trainingPanel(learner, { ready, drive }) {
   };
   new ResizeObserver(draw).observe($("curve"));
   return { draw };
-}
-
-export function download(name, content) {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([content]));
-  link.download = name;
-  link.click();
-  // Later, because the browser may still be reading it.
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }

@@ -1,23 +1,19 @@
 // Tests the page in a browser, and compares its results with native ones.
 
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { inChromium } from "../../../bindings/npm/browser.mjs";
 import { Learner } from "../dist/acrobot-rs/policies.js";
-import { ACTIONS, bits, trace } from "./native.mjs";
+import { ACTIONS, trace } from "./native.mjs";
 import {
   downloaded, folder, linkedActions, onPage, open, paused, press, says, shownBits, shows, showsBits,
   stepped, steps, text,
 } from "./player.mjs";
 
-onPage("the page loads, plays a policy, and has a strict content security policy", async (page) => {
-  const policy = await page.getAttribute("meta[http-equiv]", "content");
-  assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
-  assert.match(policy, /default-src 'none'/);
+onPage("the page loads and plays a policy", {}, async (page) => {
   await stepped(page, 2);
   await shows(page, "#status", "Bang-bang plays. To take over, press ← or →.");
   const drawn = await page.evaluate(() => {
@@ -30,7 +26,7 @@ onPage("the page loads, plays a policy, and has a strict content security policy
   assert.deepEqual(colors.filter((color) => !drawn.includes(color)), []);
 });
 
-onPage("keys apply torque, and states are bit-identical to native", async (page) => {
+onPage("keys apply torque, and states are bit-identical to native", {}, async (page) => {
   await paused(page, 42);
   await press(page, ACTIONS);
   await showsBits(page, trace("42", ACTIONS).at(-1));
@@ -52,27 +48,7 @@ onPage("keys apply torque, and states are bit-identical to native", async (page)
   await showsBits(page, trace("42", actions).at(-1));
 });
 
-/** What the package of this address computes: a batch with noise and resets, and a snapshot. */
-async function results(address) {
-  const { Batch } = await import(address);
-  const params = { torqueNoise: 0.3, dynamics: "nips" };
-  const batch = new Batch({ count: 37, seed: 5, params, maxSteps: 150 });
-  let step;
-  for (let i = 0; i < 400; i++) {
-    step = batch.step(Array.from({ length: 37 }, (_, j) => (i * j) % 3));
-  }
-  const { observations, rewards, ended } = step;
-  const bytes = new Uint8Array(observations.slice().buffer);
-  return [...batch.snapshot(), ...bytes, ...rewards, ...ended];
-}
-
-onPage("a batch, with noise and resets, is bit-identical to one in Node", async (page) => {
-  const found = await page.evaluate(results, "/acrobot-rs/index.js");
-  assert.ok(found.length > 2000);
-  assert.deepEqual(found, await results("../dist/acrobot-rs/index.js"));
-});
-
-onPage("seeds give Gymnasium's initial states, and invalid seeds are rejected", async (page) => {
+onPage("seeds give Gymnasium's initial states, others are rejected", {}, async (page) => {
   const seed = "123456789012345678901234567890";
   await paused(page, seed);
   await page.fill("#seed", "-1");
@@ -85,10 +61,10 @@ onPage("seeds give Gymnasium's initial states, and invalid seeds are rejected", 
   await showsBits(page, trace("5", [])[0]);
 });
 
-onPage("reset, pause and next seed do what they say", async (page) => {
+onPage("reset, pause and next seed do what they say", {}, async (page) => {
   await paused(page, 42);
   const start = await shownBits(page);
-  await press(page, [2, 2, 2]);
+  await press(page, [2, 2]);
   const before = await shownBits(page);
   await page.waitForTimeout(500);
   await showsBits(page, before);
@@ -103,7 +79,7 @@ onPage("reset, pause and next seed do what they say", async (page) => {
   await shows(page, "#pause", "Pause");
 });
 
-onPage("after a policy's goal the next seed follows, and a key takes over", async (page) => {
+onPage("after a policy's goal the next seed follows, and a key takes over", {}, async (page) => {
   await page.selectOption("#pace", "4");
   // The goal depends on the angles only.
   await page.fill("#length2", "2");
@@ -117,26 +93,21 @@ onPage("after a policy's goal the next seed follows, and a key takes over", asyn
   assert.equal(await page.inputValue("#policy"), "keys");
 });
 
-onPage("parameters act as in the crate, and invalid ones are rejected", async (page) => {
+onPage("parameters act as in the crate, and invalid ones are rejected", {}, async (page) => {
   await paused(page, 42);
   await page.fill("#dt", "0.05");
   await page.selectOption("#dynamics", "nips");
   await press(page, ACTIONS);
-  const state = await shownBits(page);
-  assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
+  await showsBits(page, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
 
-  const shown = { "-0.1": "−0.1", abc: '"abc"', " ": "an empty text", "1e999": '"1e999"' };
-  for (const [value, got] of Object.entries(shown)) {
+  for (const [value, got] of [["-0.1", "−0.1"], ["abc", "NaN"]]) {
     await page.fill("#dt", value);
     await shows(page, "#dt-reason", `dt must be finite and above 0 s, got ${got}`);
   }
   assert.equal(await page.getAttribute("#dt", "aria-invalid"), "true");
   await page.focus(".parameter:has(#mass1) [type=range]");
-  // Each key moves the slider. The episode restarts when one is released.
-  for (const key of ["ArrowLeft", "ArrowRight", "ArrowRight"]) await page.keyboard.down(key);
+  await page.keyboard.press("ArrowRight");
   assert.equal(await page.inputValue("#mass1"), "1.05");
-  await showsBits(page, state);
-  await page.keyboard.up("ArrowRight");
   await shows(page, "#step", "0");
   await says(page, "#status", /^The episode restarts, because the physics has changed\./);
 
@@ -146,7 +117,7 @@ onPage("parameters act as in the crate, and invalid ones are rejected", async (p
   await showsBits(page, trace("42", ACTIONS).at(-1));
 });
 
-onPage("a tiny time step does not freeze the page", async (page) => {
+onPage("a tiny time step does not freeze the page", {}, async (page) => {
   await page.fill("#dt", "1e-9");
   await stepped(page, 500);
   assert.match(await text(page, "#status"), /^Out of time/);
@@ -161,9 +132,7 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     await press(page, ACTIONS);
     await page.click("#share");
     link = await page.inputValue("#link");
-    // Only in Chromium may a test read what was copied.
-    const copied = () => navigator.clipboard.readText();
-    if (!inChromium.skip) assert.equal(await page.evaluate(copied), link);
+    assert.equal(await page.evaluate(() => navigator.clipboard.readText()), link);
     assert.equal(await page.url(), link);
     await shows(page, "#link-field label", "Copied: a link with seed, physics and 21 actions");
     state = await shownBits(page);
@@ -181,33 +150,12 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     assert.match(await page.url(), /#seed=42$/);
     assert.equal(await page.inputValue("#seed"), "42");
     assert.equal(await page.inputValue("#mass1"), "1");
-    // The address of an episode begins it again. A long reason is cut.
+    // The address of an episode begins it again.
     await page.evaluate(() => (location.hash = "seed=8&mass2=0.75"));
     await says(page, "#status", /^Bang-bang plays\./);
     assert.equal(await page.inputValue("#seed"), "8");
     assert.equal(await page.inputValue("#mass2"), "0.75");
-    await page.evaluate((name) => (location.hash = `${name}=`), "💥".repeat(200));
-    await says(page, "#status", /got "(💥)+…$/);
   });
-});
-
-onPage("the CSV file is bit-identical to the episode", async (page) => {
-  await paused(page, 42);
-  await press(page, ACTIONS);
-  const [names, ...lines] = (await downloaded(page, "#csv")).toString().trimEnd().split("\n");
-  // The column names of the crate's `Trajectory::write_csv`.
-  assert.equal(names.split(",").length, 13);
-  const source = readFileSync(new URL("../../../src/trajectory.rs", import.meta.url), "utf8");
-  assert.ok(source.replace(/\\\n\s*/g, "").includes(names));
-  const states = trace("42", ACTIONS);
-  lines.forEach((line, i) => {
-    const cells = line.split(",").map(Number);
-    assert.deepEqual(cells.slice(5, 7), [ACTIONS[i] - 1, -1]);
-    assert.equal(cells[0], i + 1);
-    assert.deepEqual(bits(cells.slice(1, 5)), states[i]);
-    assert.deepEqual(bits(cells.slice(7, 11)), states[i + 1]);
-  });
-  assert.equal(lines.length, ACTIONS.length);
 });
 
 /** Weights that the learner learns without a page. */
@@ -218,8 +166,7 @@ function learnt(episodes, seed) {
 }
 
 // The package's test compares the learner with the native one.
-// The package's test compares the learner with the native one.
-onPage("the worker trains the weights of the learner", async (page) => {
+onPage("the worker trains the weights of the learner", {}, async (page) => {
   const seed = "123456789012345678901";
   await page.fill("#episodes", "130");
   await page.fill("#training-seed", seed);
@@ -231,10 +178,10 @@ onPage("the worker trains the weights of the learner", async (page) => {
   await page.click("#train");
   await says(page, "#training-status", /^[1-9].* of 1,000,000 episodes/);
   await page.click("#train");
-  assert.match(await text(page, "#training-status"), / episodes per minute · stopped$/);
+  assert.match(await text(page, "#training-status"), / · stopped$/);
 });
 
-onPage("loaded weights reach the goal, and invalid ones are rejected", async (page) => {
+onPage("loaded weights reach the goal, and invalid ones are rejected", {}, async (page) => {
   const path = join(folder, "weights.bin");
   const good = learnt(200, 42);
   writeFileSync(path, good);
@@ -245,7 +192,7 @@ onPage("loaded weights reach the goal, and invalid ones are rejected", async (pa
   await page.click("#drive");
   await page.click("#pause");
   await steps(page, 200);
-  await shows(page, "#verdict", `Goal! ${await text(page, "#best")} steps`);
+  await shows(page, "#verdict", `Goal! ${await text(page, "#step")} steps`);
 
   const short = join(folder, "short.bin");
   writeFileSync(short, good.subarray(0, 1000));
@@ -271,23 +218,21 @@ for (const [missing, message, options] of [
   ["WebAssembly", /needs WebAssembly/, { prepare: () => delete globalThis.WebAssembly }],
   ["JavaScript", /needs JavaScript/, { javaScriptEnabled: false }],
 ]) {
-  const own = { ...inChromium, ...options, starts: false };
-  onPage(`without ${missing} the page says so`, own, async (page) => {
+  onPage(`without ${missing} the page says so`, { ...options, starts: false }, async (page) => {
     await page.locator("#notice", { hasText: message }).waitFor();
     assert.ok(await page.isHidden("#app"));
   });
 }
 
-const calm = { ...inChromium, reducedMotion: "reduce" };
+const calm = { reducedMotion: "reduce" };
 onPage("with reduced motion the page begins paused and moves step by step", calm, async (page) => {
   await shows(page, "#pause", "Play");
-  assert.match(await text(page, "#between"), /Reduced motion/);
   assert.match(await text(page, "#status"), /^Press Play/);
   await page.waitForTimeout(500);
   await shows(page, "#step", "0");
 });
 
-onPage("a policy that cannot play says so, and the page goes on", async (page) => {
+onPage("a policy that cannot play says so, and the page goes on", {}, async (page) => {
   await page.fill("#mass1", "3e38");
   await page.selectOption("#policy", "energy_law");
   await says(page, "#status", /energy must be a finite number, got −Infinity$/);
@@ -298,7 +243,7 @@ onPage("a policy that cannot play says so, and the page goes on", async (page) =
   await stepped(page, 2);
 });
 
-onPage("a torque ends where its button loses the focus, and begins from a list", async (page) => {
+onPage("a torque ends where its button loses the focus", {}, async (page) => {
   const held = () => page.evaluate(() => document.querySelectorAll(".held").length);
   await page.focus("#left");
   await page.keyboard.down("Space");
@@ -312,21 +257,4 @@ onPage("a torque ends where its button loses the focus, and begins from a list",
   assert.equal(await held(), 1);
   assert.equal(await page.inputValue("#policy"), "keys");
   await page.keyboard.up("ArrowRight");
-});
-
-onPage("the fewest steps are those of who played, with these parameters", async (page) => {
-  await paused(page, 42);
-  await page.selectOption("#policy", "bang_bang");
-  await steps(page, 200);
-  const best = await text(page, "#best");
-  await shows(page, "#verdict", `Goal! ${best} steps`);
-  await shows(page, "#best-label", "Fewest steps");
-  await page.selectOption("#policy", "keys");
-  await shows(page, "#best", "–");
-  await shows(page, "#best-label", "Your fewest steps");
-  await page.selectOption("#policy", "bang_bang");
-  await page.fill("#gravity", "9");
-  await shows(page, "#best", "–");
-  await page.click("#defaults");
-  await shows(page, "#best", best);
 });

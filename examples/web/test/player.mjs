@@ -7,16 +7,15 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { inChromium, launch } from "../../../bindings/npm/browser.mjs";
+import { launch } from "../../../bindings/npm/browser.mjs";
 import { decodeRun } from "../page/link.js";
 
-export const dist = fileURLToPath(new URL("../dist", import.meta.url));
 /** Tests write their files here. */
 export const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
 let browser, origin, close;
 
 before(async () => {
-  ({ browser, origin, close } = await launch(dist));
+  ({ browser, origin, close } = await launch(fileURLToPath(new URL("../dist", import.meta.url))));
 });
 
 after(async () => {
@@ -25,16 +24,10 @@ after(async () => {
 });
 
 /**
- * Opens the page and calls `play` once it has loaded. In Chromium, asserts that its console has no
- * errors or warnings, and that it requests only its own files.
+ * Opens the page and calls `play` once it has loaded. Asserts that its console has no errors or
+ * warnings, and that it requests only its own files.
  */
 export async function open({ hash = "", prepare, starts = true, ...options }, play) {
-  if (inChromium.skip) {
-    const page = browser.newPage();
-    await page.goto(origin + hash);
-    await page.waitForSelector("#app:not([hidden])");
-    return play(page);
-  }
   const permissions = ["clipboard-read", "clipboard-write"];
   const window = await browser.newContext({ permissions, ...options });
   const page = await window.newPage();
@@ -58,17 +51,14 @@ export async function open({ hash = "", prepare, starts = true, ...options }, pl
   }
 }
 
-/** A test in which `play` operates the page: as `test`, with the options of `open`, and `skip`. */
-export function onPage(name, ...more) {
-  const [play, { skip, ...options } = {}] = more.reverse();
-  test(name, { skip }, () => open(options, play));
-}
+/** A test in which `play` operates the page, with the options of `open`. */
+export const onPage = (name, options, play) => test(name, () => open(options, play));
 
 /** Resolves when the page has drawn its current state. */
 const shown = (page) =>
-  page.evaluate(() => {
-    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
-  });
+  page.evaluate(
+    () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+  );
 
 export const text = async (page, selector) => {
   await shown(page);
@@ -88,19 +78,15 @@ export const stepped = (page, count) =>
 
 export const shownBits = async (page) => {
   await shown(page);
-  return page.evaluate(() => {
-    return Array.from(document.querySelectorAll("#state code"), (code) => code.textContent);
-  });
+  return page.locator("#state code").allTextContents();
 };
 
 /** Asserts what an element's text is. */
-export async function shows(page, selector, expected) {
+export const shows = async (page, selector, expected) =>
   assert.equal(await text(page, selector), expected);
-}
 
-export async function showsBits(page, expected) {
+export const showsBits = async (page, expected) =>
   assert.deepEqual(await shownBits(page), expected);
-}
 
 /** Pauses the page in the initial state of a seed, and lets the keys play. */
 export async function paused(page, seed) {
@@ -136,7 +122,6 @@ export async function linkedActions(page) {
 }
 
 export async function downloaded(page, button) {
-  if (page.download) return Buffer.from(await page.download(button));
   const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
   return readFileSync(await download.path());
 }

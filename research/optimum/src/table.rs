@@ -4,7 +4,6 @@ use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 use anyhow::Context;
 use desktop::bang_bang;
-use desktop::search::Search;
 use indicatif::ProgressIterator;
 use learners::{Budget, Memory, Memory16, Memory64, QLambda, training};
 
@@ -27,10 +26,6 @@ pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
     let mut memory = Memory64::EMPTY;
     let learner = learnt(&mut memory);
     row("learnt, 64 KiB", mean(|state| learner.greedy(state)));
-
-    let mut search = Search::default();
-    let planned = mean(|state| search.choose(*state, 60, |state| learner.value(state)));
-    row("planned, 64 KiB", planned);
 
     let steps: usize = best.iter().map(Vec::len).sum();
     row("best known", mean_return(steps as f64));

@@ -7,7 +7,7 @@ use rand_core::Rng;
 
 use super::super::error::ControlError;
 use super::super::plan::{Knot, NoPlan};
-use super::super::tries;
+use super::super::tries::{self, Try};
 use super::{ITERATIONS, Planner};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
@@ -60,8 +60,8 @@ impl<A: Arithmetic> Planner<A> {
             found.is_none()
         };
         let mut knots = vec![empty(); steps];
-        let machine = self.machine();
-        tries::improve::<A, _>(machine, self.level, start, ITERATIONS, &mut knots, next, take);
+        let (machine, lanes) = (self.machine(self.level), &mut [Try::new(); LANES]);
+        tries::improve::<A, _, LANES>(machine, lanes, start, ITERATIONS, &mut knots, next, take);
         match found {
             Some(mut plan) => self.track(&mut plan).map(|()| plan).map_err(NoPlan::Invalid),
             None => Err(NoPlan::NotFound { tries }),
@@ -98,15 +98,8 @@ impl<A: Arithmetic> Planner<A> {
             true
         };
         let mut knots = vec![empty(); longest];
-        tries::improve::<A, _>(
-            self.machine(),
-            self.level,
-            start,
-            iterations,
-            &mut knots,
-            next,
-            take,
-        );
+        let (machine, lanes) = (self.machine(self.level), &mut [Try::new(); LANES]);
+        tries::improve::<A, _, LANES>(machine, lanes, start, iterations, &mut knots, next, take);
         let finish = |(cost, plan): (_, &mut Vec<_>)| self.finish(cost, plan);
         Ok(costs.into_iter().zip(plans).map(finish).collect())
     }

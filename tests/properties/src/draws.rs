@@ -3,7 +3,6 @@
 use std::num::NonZeroU32;
 
 use acrobot::Error;
-use acrobot::env::BoxSpace;
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use common::Repeating;
 use proptest::prelude::*;
@@ -66,25 +65,6 @@ fn words_decimals_bytes_and_integers_are_the_same_seed() {
             let position = other.unwrap_or(0);
             let (found, position) = (letters.get(position).copied(), position + 1);
             assert_eq!(parsed, Err(Error::MalformedSeed { found, position }));
-        }
-    });
-}
-
-#[test]
-fn spaces_contain_their_samples() {
-    let bound = || prop_oneof![4 => number::<f32>(Range::Any), 1 => prop::num::f32::ANY];
-    let bounds = prop::collection::vec((bound(), bound()), 0..4);
-    holds(2000, (bounds, generator()), |(bounds, mut rng)| {
-        let (low, high): (Vec<f32>, Vec<f32>) = bounds.into_iter().unzip();
-        let valid = low
-            .iter()
-            .zip(&high)
-            .all(|(low, high)| low.is_finite() && high.is_finite() && low <= high);
-        let space = BoxSpace::new(low, high);
-        assert_eq!(space.is_some(), valid);
-        if let Some(space) = space {
-            let sample = space.sample(&mut rng);
-            assert!(space.contains(&sample), "{sample:?}");
         }
     });
 }

@@ -7,7 +7,6 @@
 mod batches;
 mod control;
 mod draws;
-mod environments;
 mod formats;
 mod given;
 mod pictures;

@@ -74,24 +74,3 @@ fn angles_wrap_by_whole_turns() {
     // Up to 64 turns it subtracts one by one.
     check::<Reference>(stepped::<Reference>, [1e-14, 4e-16]);
 }
-
-#[test]
-fn sines_and_cosines_are_on_the_unit_circle() {
-    fn check<A: Tested>() {
-        holds(5000, number::<A::Scalar>(Range::Any), |x| {
-            let (sin, cos) = A::sin_cos(x);
-            let [sine, cosine] = [sin, cos].map(Real::to_f64);
-            assert!(sine.abs() <= 1.0 && cosine.abs() <= 1.0, "{sine} {cosine}");
-            let radius = sine * sine + cosine * cosine;
-            // For large angles, which are far apart in `f32`, `Micro` leaves the range of its
-            // polynomials.
-            assert!((radius - 1.0).abs() <= 1e-4, "{radius}");
-            assert_eq!(A::sin_cos(-x), (-sin, cos));
-            // Farther, any result is valid.
-            if x.to_f64().abs() <= 524_288.0 {
-                assert_eq!(bits([A::cos_near(x)]), bits([cos]));
-            }
-        });
-    }
-    in_every_arithmetic!(check);
-}

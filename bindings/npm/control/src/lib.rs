@@ -1,4 +1,4 @@
-//! The WebAssembly module of `acrobot-rs/control`: linear models, regulators and a planner.
+//! The WebAssembly module of `acrobot-rs/control`: regulators and a planner.
 //!
 //! All data except single numbers passes through the words of `memory`. A function returns 0, or
 //! the kind of error, whose details are in the words.
@@ -6,18 +6,15 @@
 use std::slice;
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{
-    self, ControlError, Cost, Knot, LinearModel, Lqr, NoPlan, linearize, linearize_step, lqr,
-};
+use acrobot::control::{self, ControlError, Cost, Knot, Lqr, NoPlan};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, State};
 use memory::{changed, keep, seed, set, set_numbers, text, zeros};
 
-/// The first words of the weights of a cost, after the parameters, of those of a regulator, after a
-/// model, and of a state, after the longest seed.
-const COST: usize = 19;
-const WEIGHTS: usize = 20;
+/// The first words of the weights of a cost or a regulator, after the parameters, and of a state,
+/// after the longest seed.
+const WEIGHTS: usize = 19;
 const STATE: usize = 64;
 
 #[unsafe(no_mangle)]
@@ -32,17 +29,8 @@ fn numbers<const N: usize>(from: usize) -> [f32; N] {
     rest.copied().unwrap_or([0.0; N])
 }
 
-fn matrix(from: usize) -> [[f32; 4]; 4] {
-    [0, 4, 8, 12].map(|row| numbers(from + row))
-}
-
 fn state() -> State<f32> {
     numbers(STATE).into()
-}
-
-/// The pendulum with the parameters in the mask.
-fn pendulum(mask: u32) -> Result<Pendulum<Damped<Fast>>, ControlError> {
-    Ok(Pendulum::new(changed(Params::DEFAULT, mask), state())?)
 }
 
 /// Writes a result, and returns 0, or the kind of error. JavaScript composes the message, as with
@@ -69,47 +57,27 @@ fn write<const N: usize>(result: Result<[f32; N], ControlError>) -> u32 {
     kind
 }
 
-/// Writes a matrix by rows, then a vector.
-fn write_matrix(result: Result<([[f32; 4]; 4], [f32; 4]), ControlError>) -> u32 {
-    write(result.map(|(matrix, vector)| {
+/// Writes the cost of all steps, by rows, and the gain of the regulator of a pendulum.
+#[unsafe(no_mangle)]
+pub extern "C" fn regulator(mask: u32, torque: f32) -> u32 {
+    let q = [0, 4, 8, 12].map(|row| numbers(WEIGHTS + row));
+    let [r] = numbers(WEIGHTS + 16);
+    let pendulum = Pendulum::<Damped<Fast>>::new(changed(Params::DEFAULT, mask), state());
+    let regulator = pendulum
+        .map_err(ControlError::Invalid)
+        .and_then(|pendulum| control::regulator(&pendulum, torque, &q, r));
+    write(regulator.map(|Lqr { gain, cost_to_go: [a, b, c, d] }| {
         let mut numbers = [0.0; 20];
-        let rows = matrix.as_flattened().iter().chain(&vector);
-        numbers.iter_mut().zip(rows).for_each(|(to, x)| *to = *x);
+        let (rows, _) = numbers.as_chunks_mut();
+        rows.copy_from_slice(&[a, b, c, d, gain]);
         numbers
     }))
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn linear_model(mask: u32, torque: f32, of_step: bool) -> u32 {
-    let linearize = if of_step { linearize_step } else { linearize };
-    let model = pendulum(mask).and_then(|pendulum| linearize(&pendulum, torque));
-    write_matrix(model.map(|LinearModel { a, b }| (a, b)))
-}
-
-/// The regulator of the linear model in the words, or of a pendulum.
-#[unsafe(no_mangle)]
-pub extern "C" fn regulator(mask: u32, torque: f32, of_model: bool) -> u32 {
-    let (q, [r]) = (matrix(WEIGHTS), numbers(WEIGHTS + 16));
-    let regulator = match of_model {
-        true => lqr(&LinearModel { a: matrix(0), b: numbers(16) }, &q, r),
-        false => pendulum(mask).and_then(|pendulum| control::regulator(&pendulum, torque, &q, r)),
-    };
-    write_matrix(regulator.map(|Lqr { gain, cost_to_go }| (cost_to_go, gain)))
 }
 
 /// A planner with memory for a plan.
 pub struct Planner {
     planner: control::Planner<Damped<Fast>>,
     knots: Vec<Knot<f32>>,
-}
-
-/// The knot in the words: its state, torque and gain.
-fn knot() -> Knot<f32> {
-    let [state, gain] = [numbers::<4>(0), numbers(5)];
-    let [torque] = numbers(4);
-    let mut knot = Knot::open(torque);
-    (knot.state, knot.gain) = (state.into(), gain);
-    knot
 }
 
 /// The default weights, with those in the mask.
@@ -129,8 +97,8 @@ fn cost(params: &Params<f32>, mask: u32) -> Cost<f32> {
         &mut cost.margin,
         &mut cost.arrival,
     ];
-    for (i, (weight, given)) in weights.into_iter().zip(numbers::<11>(COST)).enumerate() {
-        if mask >> (COST + i) & 1 != 0 {
+    for (i, (weight, given)) in weights.into_iter().zip(numbers::<11>(WEIGHTS)).enumerate() {
+        if mask >> (WEIGHTS + i) & 1 != 0 {
             *weight = given;
         }
     }
@@ -140,7 +108,7 @@ fn cost(params: &Params<f32>, mask: u32) -> Cost<f32> {
 /// Makes a planner with the parameters and weights in the mask. Writes its address, or 0 without
 /// memory.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_new(mask: u32, limit: f32) -> u32 {
+pub extern "C" fn make(mask: u32, limit: f32) -> u32 {
     let params = changed(Params::DEFAULT, mask);
     match control::Planner::with_cost(params, limit, cost(&params, mask)) {
         Ok(planner) => {
@@ -153,13 +121,13 @@ pub extern "C" fn planner_new(mask: u32, limit: f32) -> u32 {
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_free(planner: Box<Planner>) {
+pub extern "C" fn kept_free(planner: Box<Planner>) {
     drop(planner);
 }
 
 /// Makes memory for a plan, if there is any.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_resize(planner: &mut Planner, steps: usize) -> bool {
+pub extern "C" fn resize(planner: &mut Planner, steps: usize) -> bool {
     // SAFETY: a knot has numbers only.
     let knots = unsafe { zeros(steps) };
     knots.map(|knots| planner.knots = knots).is_some()
@@ -167,25 +135,17 @@ pub extern "C" fn planner_resize(planner: &mut Planner, steps: usize) -> bool {
 
 /// Writes a knot of the plan.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_read(planner: &Planner, step: usize) {
+pub extern "C" fn read_knot(planner: &Planner, step: usize) {
     if let Some(Knot { state, torque, gain: [k1, k2, k3, k4], .. }) = planner.knots.get(step) {
         let State { theta1, theta2, dtheta1, dtheta2 } = *state;
         set_numbers([theta1, theta2, dtheta1, dtheta2, *torque, *k1, *k2, *k3, *k4]);
     }
 }
 
-/// Sets a knot of the plan.
-#[unsafe(no_mangle)]
-pub extern "C" fn planner_set(planner: &mut Planner, step: usize) {
-    if let Some(place) = planner.knots.get_mut(step) {
-        *place = knot();
-    }
-}
-
 /// Plans with a seed of so many words. Writes the length of the plan, or returns 11 if it finds
 /// none.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_plan(planner: &mut Planner, words: usize, tries: u32) -> u32 {
+pub extern "C" fn plan(planner: &mut Planner, words: usize, tries: u32) -> u32 {
     let mut rng = Pcg64::from(seed(words));
     match planner.planner.plan(state(), tries, &mut rng, &mut planner.knots) {
         Ok(plan) => {
@@ -197,23 +157,18 @@ pub extern "C" fn planner_plan(planner: &mut Planner, words: usize, tries: u32) 
     }
 }
 
-/// Improves the plan. Writes its cost.
-#[unsafe(no_mangle)]
-pub extern "C" fn planner_improve(planner: &mut Planner, iterations: u32) -> u32 {
-    let cost = planner.planner.improve(state(), iterations, &mut planner.knots);
-    write(cost.map(|cost| [cost]))
-}
-
 /// The torque that follows the knot in the words, or that of the regulator after a plan.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_follow(planner: &Planner, is_planned: bool) -> f32 {
-    let knot = knot();
+pub extern "C" fn follow(planner: &Planner, is_planned: bool) -> f32 {
+    let [a, b, c, d, torque, gain @ ..] = numbers::<9>(0);
+    let mut knot = Knot::open(torque);
+    (knot.state, knot.gain) = ([a, b, c, d].into(), gain);
     let plan = if is_planned { slice::from_ref(&knot) } else { &[] };
     planner.planner.follow(plan, 0, state())
 }
 
 /// Writes the torque without a plan.
 #[unsafe(no_mangle)]
-pub extern "C" fn planner_decide(planner: &mut Planner) -> u32 {
+pub extern "C" fn decide(planner: &mut Planner) -> u32 {
     write(planner.planner.decide(state()).map(|torque| [torque]).map_err(ControlError::Invalid))
 }

@@ -117,7 +117,6 @@ pub fn reason(result: Result<(), Error>) -> u32 {
     let (kind, value, texts) = match result {
         Ok(()) => return 0,
         Err(Error::OutOfRange { name, value, unit, rule }) => (1, value, [name, rule, unit]),
-        Err(Error::NoFriction { name, value }) => (2, value, [name, "", ""]),
         // Of own parameters, where all acrobots share them. JavaScript lets no other occur.
         Err(_) => (3, 0.0, [""; 3]),
     };

@@ -70,12 +70,20 @@ def numbers(
     return array
 
 
+def integer(name: str, value: Any, low: int, high: int) -> int:
+    if not (isinstance(value, Integral) and low <= value <= high):
+        raise must_be(name, f"an integer from {low} to {high}", repr(value))
+    return int(value)
+
+
 def states_of(value: Any, num_envs: int) -> NDArray[np.float64]:
-    """States of all environments. The native part checks the numbers."""
-    shape = (num_envs, 4)
-    states = numbers("state", f"numbers of shape {shape}", value, shape)
+    """A state of each environment, or the same for all. The native part checks the numbers."""
+    rule = f"numbers of shape ({num_envs}, 4) or (4,)"
+    states = numbers("state", rule, value, None)
+    if states.shape not in ((num_envs, 4), (4,)):
+        raise must_be("state", rule, reprlib.repr(value))
     with np.errstate(over="ignore"):
-        return np.ascontiguousarray(states, np.float64)
+        return np.ascontiguousarray(np.broadcast_to(states, (num_envs, 4)), np.float64)
 
 
 def values_of_each(name: str, value: Any, num_envs: int) -> list[Any] | None:

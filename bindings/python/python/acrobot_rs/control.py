@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import _native
-from acrobot_rs.arrays import must_be, numbers
+from acrobot_rs.arrays import integer, must_be, numbers
 from acrobot_rs.env import AcrobotEnv
 
 Env = gymnasium.Env[Any, Any] | None
@@ -153,11 +153,14 @@ class Planner:
         Rust's, ``progress`` is called with the number of all so far, and Ctrl-C acts. A
         ``RuntimeError`` says that no try found a plan.
         """
+        steps = integer("steps", steps, 0, 2**16 - 1)
+        tries, seed = integer("tries", tries, 0, 2**32 - 1), integer("seed", seed, 0, 2**64 - 1)
         return self._plan(self._native.plan(_four(state), steps, tries, seed, progress))
 
     def improve(self, state: ArrayLike, plan: Plan, iterations: int = 150) -> tuple[Plan, float]:
         """Improve a plan, from a state on. Return the new one, and what it costs."""
         rows = np.column_stack([plan.states, plan.torques, plan.gains]).tolist()
+        iterations = integer("iterations", iterations, 0, 2**32 - 1)
         rows, cost = self._native.improve(_four(state), rows, iterations)
         return self._plan(rows), cost
 

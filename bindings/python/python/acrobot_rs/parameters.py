@@ -5,12 +5,11 @@ from __future__ import annotations
 import copy
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium import logger, spaces
-from numpy.typing import NDArray
 
 from acrobot_rs._native import BOUND, Acrobot, Batch
 from acrobot_rs.arrays import LARGEST, must_be
@@ -52,15 +51,9 @@ class Normal:
 
 
 Drawn = Uniform | LogUniform | Normal
-Torques = Sequence[float] | NDArray[Any]
-Equations = Literal["book", "nips"]
-#: The types of parameters. Those of a single environment are float, Torques and Equations.
-Each = TypeVar("Each")
-EachTorques = TypeVar("EachTorques")
-EachEquations = TypeVar("EachEquations")
 
 
-class Parameters(Generic[Each, EachTorques, EachEquations]):
+class Parameters:
     """The parameters of the physics, with Gymnasium's names.
 
     Set them as arguments, on an environment or in a subclass, whose parameters a new environment
@@ -68,27 +61,27 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
     follow.
     """
 
-    LINK_LENGTH_1: Each = 1.0  #: m; above 0
-    LINK_LENGTH_2: Each = 1.0  #: m; above 0; changes pictures only
-    LINK_MASS_1: Each = 1.0  #: kg; above 0
-    LINK_MASS_2: Each = 1.0  #: kg; above 0
-    LINK_COM_POS_1: Each = 0.5  #: centre of mass from the joint, m; 0 or more
-    LINK_COM_POS_2: Each = 0.5  #: centre of mass from the joint, m; 0 or more
-    LINK_MOI: Each = 1.0  #: moment of inertia of each link about its centre, kg m²; 0 or more
-    LINK_MOI_1: Each | None = None  #: of link 1, kg m²; 0 or more; ``None``: ``LINK_MOI``
-    LINK_MOI_2: Each | None = None  #: of link 2, kg m²; 0 or more; ``None``: ``LINK_MOI``
-    gravity: Each = 9.8  #: acceleration, downwards, m/s²; finite; Gymnasium's cannot change
-    dt: Each = 0.2  #: duration of a step, s; above 0
-    MAX_VEL_1: Each = 4 * math.pi  #: of |θ̇1| after a step, rad/s; at least 1.2e-38; may be inf
-    MAX_VEL_2: Each = 9 * math.pi  #: of |θ̇2| after a step, rad/s; at least 1.2e-38; may be inf
+    LINK_LENGTH_1: Any = 1.0  #: m; above 0
+    LINK_LENGTH_2: Any = 1.0  #: m; above 0; changes pictures only
+    LINK_MASS_1: Any = 1.0  #: kg; above 0
+    LINK_MASS_2: Any = 1.0  #: kg; above 0
+    LINK_COM_POS_1: Any = 0.5  #: centre of mass from the joint, m; 0 or more
+    LINK_COM_POS_2: Any = 0.5  #: centre of mass from the joint, m; 0 or more
+    LINK_MOI: Any = 1.0  #: moment of inertia of each link about its centre, kg m²; 0 or more
+    LINK_MOI_1: Any = None  #: of link 1, kg m²; 0 or more; ``None``: ``LINK_MOI``
+    LINK_MOI_2: Any = None  #: of link 2, kg m²; 0 or more; ``None``: ``LINK_MOI``
+    gravity: Any = 9.8  #: acceleration, downwards, m/s²; finite; Gymnasium's cannot change
+    dt: Any = 0.2  #: duration of a step, s; above 0
+    MAX_VEL_1: Any = 4 * math.pi  #: of |θ̇1| after a step, rad/s; at least 1.2e-38; may be inf
+    MAX_VEL_2: Any = 9 * math.pi  #: of |θ̇2| after a step, rad/s; at least 1.2e-38; may be inf
     #: Torques of the actions 0, 1 and 2, N m; finite. A single environment may have others.
-    AVAIL_TORQUE: EachTorques = (-1.0, 0.0, 1.0)
+    AVAIL_TORQUE: Any = (-1.0, 0.0, 1.0)
     #: Each step adds a uniform draw within ± this to the torque, N m; 0 or more. 0 draws nothing.
-    torque_noise_max: Each = 0.0
+    torque_noise_max: Any = 0.0
     #: The equations of motion: of Sutton and Barto's book, or as printed in the 1996 paper.
-    book_or_nips: EachEquations = "book"
-    FRICTION_1: Each = 0.0  #: viscous, of the fixed joint, N m s/rad; 0 or more
-    FRICTION_2: Each = 0.0  #: viscous, of the joint between the links, N m s/rad; 0 or more
+    book_or_nips: Any = "book"
+    FRICTION_1: Any = 0.0  #: viscous, of the fixed joint, N m s/rad; 0 or more
+    FRICTION_2: Any = 0.0  #: viscous, of the joint between the links, N m s/rad; 0 or more
 
     metadata: dict[str, Any]
     spec: Any
@@ -195,7 +188,7 @@ class Parameters(Generic[Each, EachTorques, EachEquations]):
                         new.seed(int(current.np_random.integers(2**32)))
                         super().__setattr__(space, new)
 
-    def __copy__(self) -> Parameters[Each, EachTorques, EachEquations]:
+    def __copy__(self) -> Parameters:
         """As ``copy.deepcopy``: two objects with the same states would be no copies."""
         return copy.deepcopy(self)
 

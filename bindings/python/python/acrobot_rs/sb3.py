@@ -5,7 +5,6 @@ This module needs ``stable-baselines3``, which the package does not install.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -31,10 +30,9 @@ class AcrobotVecEnv(VecEnv):
 
     - ``envs`` is one vector environment, which has the ``metadata``. There are no buffers such as
       ``buf_obs``.
-    - ``set_attr`` sets parameters and states, and the spaces follow. In ``DummyVecEnv`` it sets
-      attributes of the outermost wrappers.
-    - ``get_attr`` and ``has_attr`` know what ``envs.get_attr`` knows, and ``env_method`` only
-      ``render``. There are no wrappers, so ``env_is_wrapped`` returns ``False``.
+    - ``set_attr`` sets parameters and states, and the spaces follow. ``get_attr`` and ``has_attr``
+      know what ``envs.get_attr`` knows, and ``env_method`` only ``render``.
+    - There are no wrappers, so ``env_is_wrapped`` returns ``False``.
     - The options of ``set_options`` must be the same for all environments.
 
     >>> import acrobot_rs
@@ -117,11 +115,7 @@ class AcrobotVecEnv(VecEnv):
         return [wrapped[index] for index in self._get_indices(indices)]
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
-        if self.render_mode == "rgb_array":
-            return self.env_method("render")
-        rule = "but this method assumes it is `rgb_array` to obtain images."
-        warnings.warn(f"The render mode is {self.render_mode}, {rule}", stacklevel=2)
-        return [None] * self.num_envs
+        return self.env_method("render")
 
     def close(self) -> None:
         self.envs.close()

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -17,13 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 from acrobot_rs import arrays
 from acrobot_rs._native import BALANCE_BOUND, MAX_STEPS, Batch
 from acrobot_rs.arrays import Seed, must_be, numbers, read_only
-from acrobot_rs.parameters import Drawn, Equations, Parameters, Torques
+from acrobot_rs.parameters import Drawn, Parameters
 
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
-Numbers = float | Sequence[float] | NDArray[Any] | Drawn
-ManyTorques = Torques | Sequence[Sequence[float]] | Drawn
-ManyEquations = Equations | Sequence[str] | NDArray[Any]
 
 #: What ``get_attr`` and ``call`` know, with the parameters.
 _ATTRIBUTES = (
@@ -32,14 +27,11 @@ _ATTRIBUTES = (
 )
 
 
-class AcrobotVectorEnv(
-    Parameters[Numbers, ManyTorques, ManyEquations], VectorEnv[Floats, NDArray[Any], np.ndarray]
-):
+class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     """Many ``Acrobot-v1`` environments, thousands of times as fast as ``SyncVectorEnv``.
 
-    They are computed in ``float32``, or with ``float64=True`` in ``float64``, bit-identically on
-    every machine. Each step differs from Gymnasium's by rounding only, but whole episodes drift
-    apart, because an acrobot is chaotic.
+    They are computed in ``float32``, bit-identically on every machine. Each step differs from
+    Gymnasium's by rounding only, but whole episodes drift apart, because an acrobot is chaotic.
 
     Environment ``i`` draws from the ``i``-th child of the seed,
     ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
@@ -48,11 +40,6 @@ class AcrobotVectorEnv(
     :class:`acrobot_rs.Uniform`, :class:`acrobot_rs.LogUniform` or :class:`acrobot_rs.Normal`, from
     which each reset draws. Reading it gives what was set, and :meth:`get_parameter` what each
     environment has.
-
-    >>> import acrobot_rs
-    >>> envs = acrobot_rs.AcrobotVectorEnv(num_envs=1024, autoreset_mode="SameStep")
-    >>> envs.reset(seed=42)[0].shape
-    (1024, 6)
     """
 
     metadata: dict[str, Any] = {
@@ -74,7 +61,7 @@ class AcrobotVectorEnv(
         gymnasium_episodes: bool = False,
         threads: int | None = 1,
         float64: bool = False,
-        **parameters: Numbers | ManyTorques | ManyEquations,
+        **parameters: Any,
     ) -> None:
         """Make environments. Reset them before their first step.
 
@@ -100,8 +87,7 @@ class AcrobotVectorEnv(
         limit = 2**32 - 1 if max_episode_steps is None else max_episode_steps
         counts = {"num_envs": num_envs, "max_episode_steps": limit, "threads": threads}
         for name, count in counts.items():
-            if not (isinstance(count, Integral) and 0 < count < 2**32):
-                raise must_be(name, f"an integer from 1 to {2**32 - 1}", repr(count))
+            arrays.integer(name, count, 1, 2**32 - 1)
         if gymnasium_episodes:
             if self._TASK != "acrobot":
                 raise must_be("gymnasium_episodes", "False in another task", True)
@@ -110,10 +96,9 @@ class AcrobotVectorEnv(
                 raise must_be("float64", rule, True)
             arrays.warn_of_other_sines()
         mode = AutoresetMode(autoreset_mode)
-        own = f"{self._TASK}_float64" if float64 else self._TASK
-        engine = "gymnasium" if gymnasium_episodes else own
+        arithmetic = "gymnasium" if gymnasium_episodes else "float64" if float64 else "float32"
         native = Batch(
-            *(num_envs, str(self.np_random_seed), limit, mode.value, engine),
+            *(num_envs, str(self.np_random_seed), limit, mode.value, (self._TASK, arithmetic)),
             *(self._CONTINUOUS, threads),
         )
         self.autoreset_mode = mode
@@ -163,14 +148,12 @@ class AcrobotVectorEnv(
         """Begin an episode in each environment.
 
         Args:
-            seed: An integer of at least 0 with at most 4,300 digits, whose children seed the
-                environments' streams; with ``gymnasium_episodes``, ``seed + i`` seeds environment
-                ``i``. Or a list with an integer or ``None`` for each environment. With ``None``
-                streams continue.
+            seed: An integer of at least 0 with at most 4,300 digits; with ``gymnasium_episodes``,
+                ``seed + i`` seeds environment ``i``. Or a list with an integer or ``None`` for each
+                environment. With ``None`` streams continue.
             options: As in a single environment, and ``"reset_mask"``: an array of ``bool``;
-                environments whose element is false are neither seeded nor reset. ``"state"`` has
-                the shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all. Autoresets ignore
-                all options.
+                environments whose element is false are neither seeded nor reset. ``"state"`` may
+                have the shape ``(num_envs, 4)``. Autoresets ignore all options.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and empty infos.
@@ -180,7 +163,7 @@ class AcrobotVectorEnv(
         mask = arrays.reset_mask(options, self.num_envs)
         states = None
         if "state" in options:
-            states = arrays.states_of(self._each(options["state"]), self.num_envs)
+            states = arrays.states_of(options["state"], self.num_envs)
         child_of, seeds = arrays.seeds_of(seed, self.num_envs, self._gymnasium_episodes)
         if seeds is not None and mask is not None:
             seeds = [each if some else None for each, some in zip(seeds, mask, strict=True)]
@@ -230,10 +213,9 @@ class AcrobotVectorEnv(
     def state(self) -> NDArray[np.floating[Any]]:
         """theta1, theta2 (rad) and their velocities (rad/s) of each: a read-only ``(num_envs, 4)``.
 
-        To set the states, assign an array of this shape. To set some, change rows of
-        ``state.copy()`` and assign it. Episodes and numbers of steps continue:
+        To set the states, assign an array of this shape, or one state for all. Episodes continue:
         ``reset(options={"state": states})`` begins episodes instead. In mode ``NextStep`` the step
-        after an episode's end still resets, even if you set its state.
+        after an episode's end still resets.
         """
         states = np.empty((self.num_envs, 4), np.float64)
         self._native.states(states)
@@ -242,14 +224,6 @@ class AcrobotVectorEnv(
     @state.setter
     def state(self, states: ArrayLike) -> None:
         self._native.set_states(arrays.states_of(states, self.num_envs))
-
-    def _each(self, states: Any) -> Any:
-        """A state for each environment, if there is one for all."""
-        try:
-            one = arrays.numbers("state", "four numbers", states, (4,))
-        except ValueError:
-            return states
-        return np.tile(one, (self.num_envs, 1))
 
     @property
     def elapsed_steps(self) -> NDArray[np.int64]:
@@ -295,7 +269,7 @@ class AcrobotVectorEnv(
         ``values`` is one value for all environments, or a list, tuple or array with a value for
         each. A parameter can also be drawn, for example by an :class:`acrobot_rs.Uniform`.
         """
-        setattr(self, name, self._each(values) if name == "state" else values)
+        setattr(self, name, values)
 
     def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
         """For each environment an array of shape ``(500, 500, 3)`` or a text, as the mode says.

@@ -1,83 +1,54 @@
-//! Counts instructions, the same in every run. Then it compares the bits of `Reference` and
-//! `Portable` with the crate's tests.
+//! Counts instructions, the same in every run, and compares drawings with the crate's tests.
 
 #![no_std]
 #![no_main]
 
 use core::hint::black_box;
 
-use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Real, Reference};
 use acrobot::control::{
     ControlError, difference, inverse_dynamics, linearize, linearize_step, lqr, velocities,
 };
-use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Theme};
-use acrobot::{Acrobot, Action, Fast, Params, Portable, State, Step, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, State};
 use acrobot_cortex_m::counter::Counter;
-use bits::episodes;
+use bits::oled::{self, Display};
 use cortex_m_rt::entry;
-use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
-use embedded_graphics::pixelcolor::BinaryColor;
-use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
 use semihosting::{println, process};
 
 #[entry]
 fn main() -> ! {
     let mut counter = Counter::take();
-    measure::<Fast>("fast", &mut counter);
-    measure::<Micro>("micro", &mut counter);
-    measure::<Reference>("reference", &mut counter);
-    measure::<Portable>("portable", &mut counter);
-    // The bits must also be the same with libgcc's routines.
-    let equal = episodes::sixteen::<Reference>() == episodes::REFERENCE
-        && episodes::sixteen::<Portable>() == episodes::PORTABLE;
-    println!("episodes in doubles are bit-identical: {equal}");
-    process::exit(if equal { 0 } else { 1 })
+    draw(&mut counter);
+    let controlled = control::<Fast>("fast", &mut counter).is_ok()
+        && control::<Reference>("reference", &mut counter).is_ok();
+    let equal = oled::drawn() == oled::DRAWN;
+    println!("drawings are bit-identical: {equal}");
+    process::exit(if controlled && equal { 0 } else { 1 })
 }
 
-type Display =
-    Framebuffer<BinaryColor, RawU1, BigEndian, 128, 64, { buffer_size::<BinaryColor>(128, 64) }>;
-
-fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
-    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(42));
-    let mut action_space = Pcg64::new(42);
-    let actions = [(); 64].map(|()| Action::sample(&mut action_space));
-    let mut actions = actions.iter().copied().cycle();
-    let mut action = || actions.next().unwrap_or(Action::Zero);
-
-    // From −8 to 8 rad: more than a turn in either direction.
-    let angles: [A::Scalar; 64] =
-        core::array::from_fn(|i| A::Scalar::from_f64(i as f64 * 0.25 - 8.0));
-    let mut angles = angles.iter().copied().cycle();
-    let count = counter.count(6400, || {
-        black_box(A::sin_cos(angles.next().unwrap_or_default()));
-    });
-    println!("{name} sin_cos {count}");
-
-    let count = counter.count(1000, || {
-        black_box(acrobot.reset());
-    });
-    println!("{name} reset {count}");
-
+fn draw(counter: &mut Counter) {
+    let mut acrobot = Acrobot::<Fast>::new(42);
     let mut display = Display::new();
     let count = counter.count(200, || {
-        step(&mut acrobot, action());
-        let _ = Figure::new(acrobot.inner()).draw(&mut display, &Theme::MONOCHROME);
+        step(&mut acrobot);
+        let Ok(()) = Figure::new(&acrobot).draw(&mut display, &Theme::MONOCHROME);
     });
-    println!("{name} draw {count}");
-
-    let mut shown = Figure::new(acrobot.inner());
+    println!("fast draw {count}");
+    let mut shown = Figure::new(&acrobot);
     let count = counter.count(200, || {
-        step(&mut acrobot, action());
-        let figure = Figure::new(acrobot.inner());
-        let _ = figure.redraw(&shown, &mut display, &Theme::MONOCHROME);
+        step(&mut acrobot);
+        let figure = Figure::new(&acrobot);
+        let Ok(()) = figure.redraw(&shown, &mut display, &Theme::MONOCHROME);
         shown = figure;
     });
-    println!("{name} redraw {count}");
-    if control::<A>(name, counter).is_err() {
-        process::exit(1)
-    }
+    println!("fast redraw {count}");
+}
+
+fn step(acrobot: &mut Acrobot<Fast>) {
+    let action = Action::sample(acrobot.rng_mut());
+    acrobot.step(action);
 }
 
 /// A controller at 100 Hz, about the upright position.
@@ -112,9 +83,4 @@ fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Contr
         let _ = black_box(velocities(black_box(&pendulum)));
     });
     Ok(())
-}
-
-#[inline(never)]
-fn step<A: Arithmetic>(acrobot: &mut TimeLimit<Acrobot<A>>, action: Action) -> Step {
-    acrobot.step(action)
 }

@@ -5,7 +5,6 @@
 #![no_std]
 #![no_main]
 
-use core::cell::RefCell;
 use core::fmt::{self, Write as _};
 use core::hint::black_box;
 
@@ -33,11 +32,6 @@ fn main() -> ! {
             if let Err(error) = set_params(acrobot) {
                 let _ = write!(Output, "{error}");
             }
-        }),
-        // It can panic, and then semihosting's panic handler prints.
-        Some("cell") => acrobot::<Fast>(|acrobot| {
-            let cell = RefCell::new(acrobot.state());
-            black_box(&cell).borrow_mut().theta1 = 0.0;
         }),
         Some("lqr") => acrobot(regulate),
         Some("lqr_stack") => print_stack(),

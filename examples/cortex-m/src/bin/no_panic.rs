@@ -23,11 +23,9 @@ use acrobot::render::{Figure, Theme};
 use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, ResetOptions, State, TimeLimit};
+use bits::oled::Display;
 use bits::training;
 use cortex_m_rt::entry;
-use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
-use embedded_graphics::pixelcolor::BinaryColor;
-use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
 use learners::Memory16;
 use policy::Policy;
 use rand_core::{Rng as _, SeedableRng as _};
@@ -252,9 +250,6 @@ fn planner<A: Arithmetic>() {
         }
     }
 }
-
-type Display =
-    Framebuffer<BinaryColor, RawU1, BigEndian, 128, 64, { buffer_size::<BinaryColor>(128, 64) }>;
 
 /// A policy from a file that is read at run time.
 fn policy() {

@@ -1,6 +1,5 @@
 //! An RTIC app. SysTick's task owns the acrobot and steps it five times a second; a task of lower
-//! priority decides on the next action. It fails if the episode does not end as in a plain loop,
-//! for instance because a decision came too late.
+//! priority decides on the next action.
 
 #![no_std]
 #![no_main]
@@ -16,9 +15,9 @@ mod device {
 mod app {
     use acrobot::numpy::Pcg64;
     use acrobot::{Acrobot, Action, Fast, TimeLimit};
-    use acrobot_cortex_m::episode::{decide, finish};
     use cortex_m::peripheral::SCB;
     use cortex_m::peripheral::syst::SystClkSource;
+    use semihosting::{println, process};
 
     /// SysTick counts per 0.2 s at the core's 25 MHz on QEMU's mps2-an386.
     const PERIOD: u32 = 5_000_000;
@@ -69,7 +68,8 @@ mod app {
         let step = cx.local.acrobot.step(action);
         cx.shared.observation.lock(|seen| *seen = step.observation);
         if step.done() {
-            finish(cx.local.acrobot, step)
+            println!("the episode ended after {} steps", cx.local.acrobot.elapsed_steps());
+            process::exit(0)
         }
         SCB::set_pendsv(); // runs `controller` after this task
     }
@@ -77,7 +77,8 @@ mod app {
     #[task(binds = PendSV, priority = 1, shared = [observation, action])]
     fn controller(mut cx: controller::Context) {
         let observation = cx.shared.observation.lock(|seen| *seen);
-        let next = decide(observation); // without a lock: a tick need not wait
+        // Torque against the velocity of link 1, without a lock: a tick need not wait.
+        let next = if observation[4] > 0.0 { Action::Negative } else { Action::Positive };
         cx.shared.action.lock(|action| *action = next);
     }
 }

@@ -52,13 +52,6 @@ impl Folder {
     fn read(&self, name: &str) -> Vec<u8> {
         fs::read(self.path(name)).unwrap()
     }
-
-    /// The text of a picture, which must be a complete SVG.
-    fn svg(&self, name: &str) -> String {
-        let text = String::from_utf8(self.read(name)).unwrap();
-        assert!(text.starts_with("<svg") && text.ends_with("</svg>\n"));
-        text
-    }
 }
 
 /// The pictures of the README, of docs/control.md and of docs/embedded-topics.md.
@@ -80,7 +73,6 @@ fn pictures_are_those_of_the_pages() {
 fn bad_arguments_are_rejected_with_a_reason() {
     let folder = Folder::new("rejected");
     for (line, reason) in [
-        ("swing_up --plan 129", "129 is not in 1..=128"),
         ("swing_up --load none.bin", "Error: none.bin"),
         ("episode --seed 4x2", "got 'x' as character 2"),
         ("episode --out no/a.svg", "Error: cannot write no/a.svg"),

@@ -9,8 +9,7 @@
 //! With `--quiet` it prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the
 //! first n ≥ 100 for which the mean return of episodes n − 99 to n is −100 or better. R and S are
 //! the mean and standard deviation of 1,000 greedy episodes from initial states that it was not
-//! trained on, and K of these missed the goal. The time of learning goes to stderr. With
-//! `--evaluate N` a line `steps M greedy_mean R` for every N steps comes before.
+//! trained on, and K of these missed the goal. The time of learning goes to stderr.
 //!
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into
 //! torque against θ̇1. This is the baseline.
@@ -18,21 +17,14 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use acrobot::Action;
 use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Action, REWARD_THRESHOLD};
 use clap::Parser;
-use desktop::search::Search;
 use desktop::{Returns, animation, bang_bang, evaluate, load, write};
-use indicatif::{ProgressBar, ProgressIterator, ProgressStyle};
-
-mod curve;
-mod pictures;
-
+use indicatif::{ProgressBar, ProgressStyle};
 use learners::{Budget, Memory, Memory16, Memory32, Memory64, QLambda, evaluation, play, training};
-use pictures::svg;
 
-/// Learns to swing up, compares the learnt policy with two simple ones, and draws the learning
-/// curve, the values and a greedy episode.
+/// Learns to swing up, compares the learnt policy with two simple ones, and draws a greedy episode.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
@@ -45,9 +37,6 @@ struct Options {
     /// Steps of learning, instead of episodes. The last episode is finished.
     #[arg(long)]
     steps: Option<u32>,
-    /// Steps of learning from evaluation to evaluation. Without it there is one at the end.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
-    evaluate: Option<u32>,
     /// Seed of learning and evaluation: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
@@ -57,10 +46,6 @@ struct Options {
     /// File to load the weights from. Without it all weights are 0.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
-    /// Also plays a beam search over the learnt values, which looks so many steps ahead.
-    #[arg(long, value_name = "STEPS", conflicts_with = "quiet")]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=128))]
-    plan: Option<u32>,
     /// Prints one line of figures, and draws nothing.
     #[arg(long)]
     quiet: bool,
@@ -74,6 +59,8 @@ impl Options {
 
 /// The episodes of an evaluation.
 const EVALUATION: u32 = 1000;
+/// The episodes of a running mean.
+const LATEST: usize = 100;
 
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
@@ -103,7 +90,10 @@ fn run<const S: usize, const T: usize, const N: usize>(
 
     let seed = &options.seed;
     let learnt = evaluate(seed, 0..EVALUATION, |state| learner.greedy(state));
-    let solved_at = curve::solved_at(&returns).map_or("never".into(), |n| n.to_string());
+    // Gymnasium calls the task solved at this running mean.
+    let is_solved = |&n: &usize| running_mean(&returns[..n]) >= REWARD_THRESHOLD;
+    let solved_at = (LATEST..=returns.len()).find(is_solved);
+    let solved_at = solved_at.map_or("never".into(), |n| n.to_string());
     if options.quiet {
         let Returns { mean, sd, misses } = learnt;
         eprintln!("learnt in {seconds:.2} s");
@@ -119,36 +109,15 @@ fn run<const S: usize, const T: usize, const N: usize>(
     row("learnt", learnt);
     row("torque against θ̇1", evaluate(seed, 0..EVALUATION, |state| bang_bang(state.dtheta1)));
     row("random", evaluate(seed, 0..EVALUATION, |_| Action::sample(&mut actions)));
-    if let Some(depth) = options.plan {
-        let mut search = Search::default();
-        let planned = evaluate(seed, (0..EVALUATION).progress(), |state| {
-            search.choose(*state, depth, |state| learner.value(state))
-        });
-        row("planned", planned);
-    }
     println!();
-    draw(&learner, &returns, options)
+    draw(&learner, options)
 }
 
-/// Draws the pictures, and prints a line for each.
+/// Draws a greedy episode.
 fn draw<const S: usize, const T: usize>(
     learner: &QLambda<S, T>,
-    returns: &[f32],
     options: &Options,
 ) -> anyhow::Result<()> {
-    let save = |name: &str, svg: String, content: &str| {
-        write(Path::new(name), svg)?;
-        println!("{name}: {content}");
-        anyhow::Ok(())
-    };
-    if !returns.is_empty() {
-        let curve = svg((900, 480), |area| pictures::draw_curve(area, returns))?;
-        let content = format!("the returns of {} episodes", returns.len());
-        save("learning_curve.svg", curve, &content)?;
-    }
-    let values = svg((680, 720), |area| pictures::draw_values(area, |state| learner.value(state)))?;
-    save("values.svg", values, "the learnt values of states at rest")?;
-
     let mut env = evaluation(&options.seed);
     let mut states = Vec::new();
     play(&mut env, |state| {
@@ -156,8 +125,9 @@ fn draw<const S: usize, const T: usize>(
         learner.greedy(state)
     });
     states.push(env.state().cast());
-    let content = format!("a greedy episode, {} steps", env.elapsed_steps());
-    save("swing_up.svg", animation::svg(&states, animation::DELAY), &content)
+    write(Path::new("swing_up.svg"), animation::svg(&states, animation::DELAY))?;
+    println!("swing_up.svg: a greedy episode, {} steps", env.elapsed_steps());
+    Ok(())
 }
 
 /// Returns the return of each episode.
@@ -174,24 +144,22 @@ fn train<const S: usize, const T: usize>(
     let (mut returns, mut steps, mut done) = (Vec::new(), 0, 0);
     while done < length {
         returns.push(learner.learn(&mut env));
-        let before = steps;
         steps += env.elapsed_steps();
         done = match options.budget() {
             Budget::Episodes(_) => returns.len() as u32,
             Budget::Steps(_) => steps,
         };
-        if let Some(every) = options.evaluate
-            && steps / every > before / every
-        {
-            let Returns { mean, .. } =
-                evaluate(&options.seed, 0..EVALUATION, |state| learner.greedy(state));
-            println!("steps {steps} greedy_mean {mean:.2}");
-        }
         if !bar.is_hidden() {
-            bar.set_message(format!("{:.0}", curve::running_mean(&returns)));
+            bar.set_message(format!("{:.0}", running_mean(&returns)));
         }
         bar.set_position(done.min(length).into());
     }
     bar.finish();
     returns
+}
+
+/// The mean of the latest returns. They are integers, so the sum is exact.
+fn running_mean(returns: &[f32]) -> f32 {
+    let latest = &returns[returns.len().saturating_sub(LATEST)..];
+    latest.iter().sum::<f32>() / latest.len() as f32
 }
