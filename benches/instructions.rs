@@ -112,6 +112,8 @@ fn batch_portable(play: Play<Portable>) -> Play<Portable> {
     play_batch(play, false)
 }
 
+// It compiles as long as the others together, so CI counts it at night.
+#[cfg(feature = "long")]
 #[library_benchmark(setup = batch::<Reference>)]
 #[bench::avx2(args = (SimdLevel::Avx2), config = limit(712.0, ACROBOTS))]
 fn batch_reference(play: Play<Reference>) -> Play<Reference> {
@@ -128,8 +130,12 @@ library_benchmark_group!(
         micro,
         batch_fast,
         batch_fast_with_observations,
-        batch_portable,
-        batch_reference
+        batch_portable
     ]
 );
+#[cfg(feature = "long")]
+library_benchmark_group!(name = long, benchmarks = [batch_reference]);
+#[cfg(feature = "long")]
+main!(library_benchmark_groups = [steps, long]);
+#[cfg(not(feature = "long"))]
 main!(library_benchmark_groups = steps);

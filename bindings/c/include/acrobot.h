@@ -68,7 +68,7 @@
 #define ACROBOT_DRAW_NORMAL 4
 
 // Bytes of an acrobot_t.
-#define ACROBOT_SIZE 240
+#define ACROBOT_SIZE 256
 
 // Its alignment. malloc may align less, on microcontrollers to 8 bytes.
 #define ACROBOT_ALIGN 16
@@ -307,6 +307,10 @@ const char *acrobot_status_text(int status);
 
 // Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
 acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
+
+// The task to stay upright: steps of 0.02 s, a motor of 10 N m, initial states near upright, and no
+// end. The reward is 1 upright and 0 hanging.
+acrobot_status_t acrobot_init_balance(acrobot_t *acrobot, uint64_t seed);
 
 // Begins an episode in a drawn initial state.
 acrobot_status_t acrobot_reset(acrobot_t *acrobot, acrobot_observation_t *observation);

@@ -28,6 +28,8 @@ pub mod batch;
 
 mod memory;
 
+mod task;
+
 #[cfg(target_feature = "sse")]
 mod mode;
 

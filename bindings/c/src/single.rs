@@ -4,7 +4,7 @@ use core::ffi::c_int;
 use core::num::NonZeroU32;
 use core::ptr;
 
-use acrobot::task::ResetBounds;
+use acrobot::task::{Balance, ResetBounds, Task};
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
 use crate::data::{
@@ -12,8 +12,9 @@ use crate::data::{
 };
 use crate::memory::{Holder, change, check, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
+use crate::task::AnyTask;
 
-pub const ACROBOT_SIZE: usize = 240;
+pub const ACROBOT_SIZE: usize = 256;
 
 pub const ACROBOT_ALIGN: usize = 16;
 
@@ -23,7 +24,7 @@ pub struct acrobot_t {
 }
 
 impl Holder for acrobot_t {
-    type Value = TimeLimit<Acrobot<Fast>>;
+    type Value = TimeLimit<Acrobot<Fast, AnyTask>>;
 
     const TAG: u32 = u32::from_le_bytes(*b"acro");
 }
@@ -33,6 +34,20 @@ const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
     status(|| Holder::init(acrobot, TimeLimit::of(Acrobot::new(seed))))
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_init_balance(
+    acrobot: *mut acrobot_t,
+    seed: u64,
+) -> acrobot_status_t {
+    status(|| {
+        let mut balance = Acrobot::new(seed);
+        balance.set_task(AnyTask::Balance);
+        balance.set_params(Balance::PARAMS.cast())?;
+        balance.reset_with_seed(seed);
+        Holder::init(acrobot, TimeLimit::of(balance))
+    })
 }
 
 #[unsafe(no_mangle)]

@@ -6,8 +6,9 @@
 
 #define COUNT 20
 
-// From tests/bits/src/episodes.rs: FAST, and the first two of BATCHES.
+// From tests/bits/src/episodes.rs: FAST, the second of BALANCE, and the first two of BATCHES.
 static const uint64_t FAST = UINT64_C(0x273b096c8e81c01c);
+static const uint64_t BALANCE = UINT64_C(0x3c5d97b5d2a0597e);
 static const uint64_t BATCH = UINT64_C(0xeae8bc44fb2bab5e), TINY = UINT64_C(0xcc78d47481084cf5);
 
 // FNV-1a over 64-bit words.
@@ -73,6 +74,30 @@ static uint64_t episode(unsigned seed)
     } while (!step.terminated && !step.truncated);
     ACCEPTED(acrobot_reset(&acrobot, &step.observation));
     add_seen(&digest, &acrobot, &step.observation);
+    return digest;
+}
+
+// The task to stay upright, which no state ends.
+static uint64_t balance(void)
+{
+    static const acrobot_state_t STARTS[] = {{3, .2f, 0, 0}, {.5f, 0, 0, 0}};
+    uint64_t digest = OFFSET;
+    for (int i = 0; i < 2; i++) {
+        acrobot_t acrobot;
+        acrobot_state_t state;
+        acrobot_step_t step;
+        ACCEPTED(acrobot_init_balance(&acrobot, 0));
+        ACCEPTED(acrobot_state(&acrobot, &state));
+        CHECK(state.theta1 > 3.04f && state.theta1 < 3.25f);
+        ACCEPTED(acrobot_set_state(&acrobot, &STARTS[i], NULL));
+        for (int j = 0; j < 100; j++) {
+            ACCEPTED(acrobot_state(&acrobot, &state));
+            ACCEPTED(acrobot_step(&acrobot, against(state.dtheta1), &step));
+            CHECK(!step.terminated);
+            add_seen(&digest, &acrobot, &step.observation);
+            add_floats(&digest, &step.reward, 1);
+        }
+    }
     return digest;
 }
 
@@ -169,6 +194,7 @@ int main(void)
         add(&digest, episode(seed));
     }
     CHECK(digest == FAST);
+    CHECK(balance() == BALANCE);
     CHECK(batch_of_twenty(false) == BATCH);
     CHECK(batch_of_twenty(true) == TINY);
 #if __STDC_HOSTED__

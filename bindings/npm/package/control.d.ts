@@ -3,11 +3,18 @@ import type { Params, Seed, State } from "./index.js";
 /** Numbers by rows: `matrix[i][j]`. */
 export type Matrix = ArrayLike<ArrayLike<number>>;
 
+/**
+ * x is the deviation from a state [θ1, θ2, θ̇1, θ̇2], rad and rad/s, and u that from a torque, N m.
+ */
+export interface LinearModel {
+  /** A by rows: the derivatives of the results by the state. */
+  a: Float32Array[];
+  /** B: the derivatives of the results by the torque. */
+  b: Float32Array;
+}
+
 export interface Regulator {
-  /**
-   * K in u = −K x, N m per rad and per rad/s: x is the deviation from the state,
-   * [θ1, θ2, θ̇1, θ̇2], and u that from the torque.
-   */
+  /** K in u = −K x, N m per rad and per rad/s. */
   gain: Float32Array;
   /** P by rows: xᵀ P x is the cost of all steps from x on. */
   costToGo: Float32Array[];
@@ -15,6 +22,16 @@ export interface Regulator {
 
 // Parameters that are not given are Gymnasium's, with friction of 0. An invalid argument throws a
 // `RangeError` or `TypeError`.
+
+/** The equations of motion about a state and a torque, N m: ẋ = A x + B u. */
+export function linearize(
+  state: Readonly<State>, torque: number, params: Readonly<Partial<Params>>,
+): LinearModel;
+
+/** One step of `dt` about a state and a torque, N m: x′ = A x + B u. */
+export function linearizeStep(
+  state: Readonly<State>, torque: number, params: Readonly<Partial<Params>>,
+): LinearModel;
 
 /**
  * The regulator with the least sum of xᵀ Q x + R u² over all steps, about an equilibrium: by
@@ -75,6 +92,11 @@ export class Planner {
   constructor(params: Readonly<Partial<Params>>, limit: number, cost?: Readonly<Partial<Cost>>);
   /** A plan from a state to upright, or `null` if no try has found one. May take seconds. */
   plan(start: Readonly<State>, options: PlanOptions): Plan | null;
+  /**
+   * Improves a plan in place, which then begins in the state `start`. Returns its cost: the lower,
+   * the better.
+   */
+  improve(start: Readonly<State>, iterations: number, plan: Plan): number;
   /** The torque at a step, N m: that of the plan, then that of the regulator. Unlimited. */
   follow(plan: Plan, step: number, state: Readonly<State>): number;
   /** The torque without a plan, N m, up to the largest: pumps energy, and then regulates. */

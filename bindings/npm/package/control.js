@@ -1,4 +1,4 @@
-// Regulators and a planner, in a separate module. control.d.ts describes the interface.
+// Linear models, regulators and a planner, in a separate module. control.d.ts describes the interface.
 
 import {
   Kept, STATE, accept, allocated, call, checkNumber, checkedState, elements, isFinite32, isNumber,
@@ -50,24 +50,54 @@ function writeState(state) {
   return given;
 }
 
-export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
+/** Calls a function of the module for a pendulum. Returns the matrix and the vector it writes. */
+function compute(name, state, torque, params, option, weights = []) {
   const names = parameters();
   const given = readSlots("params", params, names);
+  checkNumber("torque", torque);
+  const at = writeState(state);
+  const mask = writeSlots(given, names);
+  numbers().set(weights, WEIGHTS);
+  acceptAll(wasm()[name](mask, torque, option), { ...given, ...at, torque, r: weights.at(-1) });
+  const rows = [0, 4, 8, 12, 16].map((from) => numbers().slice(from, from + 4));
+  return [rows.slice(0, 4), rows[4]];
+}
+
+export function linearize(state, torque, params) {
+  const [a, b] = compute("linear_model", state, torque, params, false);
+  return { a, b };
+}
+
+export function linearizeStep(state, torque, params) {
+  const [a, b] = compute("linear_model", state, torque, params, true);
+  return { a, b };
+}
+
+export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
   const weights = elements("q", q, 4, () => true).flatMap((row, i) =>
     elements(`q[${i}]`, row, 4, isNumber, "must be a number"),
   );
   checkNumber("r", r);
-  checkNumber("torque", torque);
-  const at = writeState(state);
-  const mask = writeSlots(given, names);
-  numbers().set([...weights, r], WEIGHTS);
-  acceptAll(wasm().regulator(mask, torque), { ...given, ...at, torque, r });
-  const [a, b, c, d, gain] = [0, 4, 8, 12, 16].map((from) => numbers().slice(from, from + 4));
-  return { gain, costToGo: [a, b, c, d] };
+  const weighted = [...weights, r];
+  const [costToGo, gain] = compute("regulator", state, torque, params, undefined, weighted);
+  return { gain, costToGo };
 }
 
 /** The arrays of a plan, with their elements for a step: a row in the module. */
 const PLAN = { states: 4, torques: 1, gains: 4 };
+
+function lengthOf(plan) {
+  const length = plan?.torques?.length;
+  if (length === undefined) throw invalid("plan must be one that a planner returns", plan, []);
+  return length;
+}
+
+function knotOf(plan, step) {
+  const row = Object.entries(PLAN).flatMap(([name, size]) =>
+    Array.from({ length: size }, (_, i) => plan[name]?.[size * step + i]),
+  );
+  return elements(`plan[${step}]`, row, 9, isFinite32, "must be a finite number");
+}
 
 export class Planner extends Kept {
   constructor(params, limit, cost = {}) {
@@ -80,42 +110,59 @@ export class Planner extends Kept {
     super("planner", allocated("planners", 1, integers()[0]));
   }
 
+  #resize(steps) {
+    allocated("steps", steps, call(this, "resize", steps));
+  }
+
+  /** Copies the module's plan into the arrays of one. */
+  #read(plan) {
+    for (let step = 0; step < plan.torques.length; step++) {
+      call(this, "read_knot", step);
+      let from = 0;
+      for (const [name, size] of Object.entries(PLAN)) {
+        for (let i = 0; i < size; i++) plan[name][size * step + i] = numbers()[from++];
+      }
+    }
+  }
+
   plan(start, options) {
     const given = checked("options", options, ["tries", "seed", "steps"]);
     const { tries = 64, seed = randomSeed(), steps } = given;
     positive("tries", tries);
     positive("steps", steps);
     const state = writeState(start);
-    allocated("steps", steps, call(this, "resize", steps));
+    this.#resize(steps);
     const kind = call(this, "plan", writeSeed(seed), tries);
     if (kind === NOT_FOUND) return null;
     acceptAll(kind, state);
     const [length] = integers();
     const plan = {};
     for (const [name, size] of Object.entries(PLAN)) plan[name] = new Float32Array(size * length);
-    for (let step = 0; step < length; step++) {
-      call(this, "read_knot", step);
-      let from = 0;
-      for (const [name, size] of Object.entries(PLAN)) {
-        plan[name].set(numbers().subarray(from, from + size), size * step);
-        from += size;
-      }
-    }
+    this.#read(plan);
     return plan;
+  }
+
+  improve(start, iterations, plan) {
+    positive("iterations", iterations);
+    const knots = Array.from({ length: lengthOf(plan) }, (_, step) => knotOf(plan, step));
+    const state = writeState(start);
+    this.#resize(knots.length);
+    knots.forEach((knot, step) => {
+      numbers().set(knot);
+      call(this, "set_knot", step);
+    });
+    acceptAll(call(this, "improve", iterations), state);
+    const [cost] = numbers();
+    this.#read(plan);
+    return cost;
   }
 
   follow(plan, step, state) {
     if (!Number.isInteger(step) || step < 0) {
       throw invalid("step must be an integer of at least 0", step);
     }
-    const length = plan?.torques?.length;
-    if (length === undefined) throw invalid("plan must be one that a planner returns", plan, []);
-    const isPlanned = step < length;
-    const row = Object.entries(PLAN).flatMap(([name, size]) =>
-      Array.from({ length: isPlanned ? size : 0 }, (_, i) => plan[name]?.[size * step + i]),
-    );
-    const rule = "must be a finite number";
-    const knot = elements(`plan[${step}]`, row, isPlanned ? 9 : 0, isFinite32, rule);
+    const isPlanned = step < lengthOf(plan);
+    const knot = isPlanned ? knotOf(plan, step) : [];
     writeState(state);
     numbers().set(knot);
     return call(this, "follow", isPlanned);

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
-import { Planner, regulator } from "../dist/control.js";
+import { Planner, linearize, linearizeStep, regulator } from "../dist/control.js";
 import { Acrobot } from "../dist/index.js";
 import { assertRejected } from "./module.mjs";
 
@@ -47,12 +47,32 @@ test("a plan, and an acrobot that follows it, are bit-identical to native ones",
   assert.ok(acrobot.tipHeight > 1.999);
 });
 
-test("a cost's weights change the plan", () => {
+test("a plan is improved in place for other weights and another start", () => {
   const [, plan] = planned();
   const jumps = ({ torques }) =>
     torques.slice(1).reduce((sum, torque, i) => sum + (torque - torques[i]) ** 2, 0);
+  const before = jumps(plan);
   const smooth = new Planner(PARAMS, 7, { torqueChange: 1, angles: [0.1, 0] });
-  assert.ok(jumps(smooth.plan(HANGING, { steps: 1100, seed: 4 })) < jumps(plan) / 2);
+  const costs = [1, 30, 30].map((iterations) => smooth.improve(state(0.05), iterations, plan));
+  assert.ok(costs[0] > costs[1] && costs[1] >= costs[2], costs.join());
+  assert.ok(jumps(plan) < before / 2);
+  assert.equal(plan.states[0], Math.fround(0.05));
+});
+
+test("linear models are derivatives of a step and of the motion", () => {
+  const [at, params] = [state(0.4, -0.3, 1, 2), { dt: 0.05, dynamics: "nips" }];
+  const acrobot = new Acrobot({ params });
+  const after = (dtheta1, torque) => {
+    acrobot.state = { ...at, dtheta1 };
+    acrobot.stepTorque(torque);
+    return acrobot.state.theta2;
+  };
+  const { a, b } = linearizeStep(at, 0.5, params);
+  assert.ok(Math.abs((after(1.1, 0.5) - after(0.9, 0.5)) / 0.2 - a[1][2]) < 1e-4);
+  assert.ok(Math.abs((after(1, 1.5) - after(1, -0.5)) / 2 - b[1]) < 1e-4);
+  const rates = linearize(at, 0.5, params);
+  assert.deepEqual([...rates.a[1], rates.b[1]], [0, 0, 0, 1, 0]);
+  assert.ok(Math.abs(b[3] / 0.05 - rates.b[3]) < 0.05);
 });
 
 test("without a plan, the torque pumps energy and then holds", () => {

@@ -37,7 +37,7 @@ def test_simulate_has_the_bits_of_an_environment(env):
 
 def test_regulators_are_those_of_python_control_and_scipy():
     rng = np.random.default_rng(0)
-    for _ in range(50):
+    for _ in range(200):
         A, B = control.linearize_step(rng.uniform(-1, 1, 4), 0.5, ENV)
         factor = rng.normal(size=(4, 4))
         Q, R = factor @ factor.T + ONE, rng.uniform(0.1, 1)

@@ -10,7 +10,8 @@ from dm_env import test_utils
 from test_swingup import RECORDED, TASKS, ours
 
 
-SWINGUP = "acrobot", "swingup"
+SWINGUP = "acrobot", "swingup", None
+TIMESTEP = {"control_timestep": 0.015}
 
 
 @TASKS
@@ -50,10 +51,10 @@ def test_a_step_after_the_time_limit_resets():
     assert short.control_timestep() == 0.025 and env.control_timestep() == 0.01
 
 
-def test_a_step_can_last_longer():
+@pytest.mark.parametrize("options", [{"n_sub_steps": 3}, {"control_timestep": 0.03}])
+def test_a_step_can_last_longer(options):
     kwargs = {"random": 3, "time_limit": 0.06}
-    env = dm_control.load(*SWINGUP, kwargs, {"control_timestep": 0.03})
-    twin = dm_control.load(*SWINGUP, kwargs)
+    env, twin = (dm_control.load(*SWINGUP[:2], kwargs, each) for each in (options, None))
     assert env.reset().first() and twin.reset().first() and env.control_timestep() == 0.03
     for action in 0.5, -0.7:
         step, [*_, expected] = env.step(action), [twin.step(action) for _ in range(3)]
@@ -61,16 +62,18 @@ def test_a_step_can_last_longer():
 
 
 @pytest.mark.parametrize(
-    ("message", "arguments"),
+    ("error", "message", "arguments"),
     [
-        ("domain_name must be .*, got 'reacher'", ["reacher", "swingup"]),
-        ("task_name must be one of .*, got 'balance'", ["acrobot", "balance"]),
-        ("time_limit must be above 0 s", [*SWINGUP, {"time_limit": 0}]),
-        ("control_timestep / dt must be .*, got 1.5", [*SWINGUP, {"control_timestep": 0.015}]),
+        (ValueError, "domain_name must be .*, got 'reacher'", ["reacher", "swingup"]),
+        (ValueError, "task_name must be one of .*, got 'balance'", ["acrobot", "balance"]),
+        (ValueError, "time_limit must be above 0 s", ["acrobot", "swingup", {"time_limit": 0}]),
+        (ValueError, "legacy_step must be True", [*SWINGUP, {"legacy_step": False}]),
+        (ValueError, "n_sub_steps must be None", [*SWINGUP, {"n_sub_steps": 1, **TIMESTEP}]),
+        (ValueError, "control_timestep / dt must be .*, got 1.5", [*SWINGUP, TIMESTEP]),
     ],
 )
-def test_invalid_arguments_are_rejected(message, arguments):
-    with pytest.raises(ValueError, match=message):
+def test_invalid_arguments_are_rejected(error, message, arguments):
+    with pytest.raises(error, match=message):
         dm_control.load(*arguments)
 
 

@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn states_outside_of_the_boxes_have_more_energy() {
         let mut rng = Pcg64::new(4);
-        for _ in 0..100_000 {
+        for _ in 0..20_000 {
             let y = STATES.map(|[_, high]| high * uniform(&mut rng, -1.2, 1.2));
             let [energy, ..] = energy_height_progress(y.map(TaylorModel::from));
             let is_inside = y[2].abs() < STATES[2][1] && y[3].abs() < STATES[3][1];

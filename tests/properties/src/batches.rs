@@ -174,7 +174,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
 fn any_calls_in_any_order_equal_single_acrobots() {
     fn check<A: Tested, T: Task, const N: usize>() {
         let calls = prop::collection::vec(call::<A>(), 0..40);
-        holds(200, (1..=LEN, any::<bool>(), calls), |(len, own, calls)| {
+        holds(120, (1..=LEN, any::<bool>(), calls), |(len, own, calls)| {
             let mut model = Model::<A, T, N>::new(len, own);
             calls.into_iter().for_each(|call| model.call(call));
         });

@@ -25,7 +25,7 @@ fn results_are_finite_or_errors() {
     fn check<A: Tested>() {
         let rates = [number::<A::Scalar>(Range::Any), number(Range::Any)];
         let given = (params::<A>(Range::Any), state(Range::Any), number(Range::Any), rates);
-        holds(2000, given, |(params, state, torque, accelerations)| {
+        holds(1000, given, |(params, state, torque, accelerations)| {
             let pendulum = Pendulum::<A>::new(params, state).unwrap();
             let continuous = linearize(&pendulum, torque);
             let discrete = linearize_step(&pendulum, torque);

@@ -61,7 +61,7 @@ fn targets_at_the_ends_of_the_grid_do_not_overflow() {
     };
     let place = (coordinate(), coordinate(), side(), side());
     let given = (figure::<Portable>(), figure::<Portable>(), place);
-    holds(4000, given, |(before, after, (x, y, width, height))| {
+    holds(2000, given, |(before, after, (x, y, width, height))| {
         let area = Rectangle::new(Point::new(x, y), Size::new(width, height));
         let mut target = Canvas::of_first(1000, area);
         before.draw(&mut target, &Theme::MONOCHROME).unwrap();

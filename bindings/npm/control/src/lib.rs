@@ -1,4 +1,4 @@
-//! The WebAssembly module of `acrobot-rs/control`: regulators and a planner.
+//! The WebAssembly module of `acrobot-rs/control`: linear models, regulators and a planner.
 //!
 //! All data except single numbers passes through the words of `memory`. A function returns 0, or
 //! the kind of error, whose details are in the words.
@@ -6,7 +6,9 @@
 use std::slice;
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{self, ControlError, Cost, Knot, Lqr, NoPlan};
+use acrobot::control::{
+    self, ControlError, Cost, Knot, LinearModel, Lqr, NoPlan, linearize, linearize_step,
+};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, State};
@@ -33,6 +35,19 @@ fn state() -> State<f32> {
     numbers(STATE).into()
 }
 
+/// The pendulum with the parameters in the mask.
+fn pendulum(mask: u32) -> Result<Pendulum<Damped<Fast>>, ControlError> {
+    Ok(Pendulum::new(changed(Params::DEFAULT, mask), state())?)
+}
+
+/// The knot in the words: its state, torque and gain.
+fn knot() -> Knot<f32> {
+    let [a, b, c, d, torque, gain @ ..] = numbers::<9>(0);
+    let mut knot = Knot::open(torque);
+    (knot.state, knot.gain) = ([a, b, c, d].into(), gain);
+    knot
+}
+
 /// Writes a result, and returns 0, or the kind of error. JavaScript composes the message, as with
 /// `memory::reason`.
 fn write<const N: usize>(result: Result<[f32; N], ControlError>) -> u32 {
@@ -57,21 +72,31 @@ fn write<const N: usize>(result: Result<[f32; N], ControlError>) -> u32 {
     kind
 }
 
-/// Writes the cost of all steps, by rows, and the gain of the regulator of a pendulum.
+/// Writes a matrix by rows, then a vector.
+fn write_matrix(result: Result<([[f32; 4]; 4], [f32; 4]), ControlError>) -> u32 {
+    write(result.map(|([a, b, c, d], vector)| {
+        let mut numbers = [0.0; 20];
+        let (rows, _) = numbers.as_chunks_mut();
+        rows.copy_from_slice(&[a, b, c, d, vector]);
+        numbers
+    }))
+}
+
+/// Writes A and B of a pendulum: of a step, or of the equations of motion.
+#[unsafe(no_mangle)]
+pub extern "C" fn linear_model(mask: u32, torque: f32, of_step: bool) -> u32 {
+    let linearize = if of_step { linearize_step } else { linearize };
+    let model = pendulum(mask).and_then(|pendulum| linearize(&pendulum, torque));
+    write_matrix(model.map(|LinearModel { a, b }| (a, b)))
+}
+
+/// Writes the cost of all steps and the gain of the regulator of a pendulum.
 #[unsafe(no_mangle)]
 pub extern "C" fn regulator(mask: u32, torque: f32) -> u32 {
     let q = [0, 4, 8, 12].map(|row| numbers(WEIGHTS + row));
     let [r] = numbers(WEIGHTS + 16);
-    let pendulum = Pendulum::<Damped<Fast>>::new(changed(Params::DEFAULT, mask), state());
-    let regulator = pendulum
-        .map_err(ControlError::Invalid)
-        .and_then(|pendulum| control::regulator(&pendulum, torque, &q, r));
-    write(regulator.map(|Lqr { gain, cost_to_go: [a, b, c, d] }| {
-        let mut numbers = [0.0; 20];
-        let (rows, _) = numbers.as_chunks_mut();
-        rows.copy_from_slice(&[a, b, c, d, gain]);
-        numbers
-    }))
+    let regulator = pendulum(mask).and_then(|p| control::regulator(&p, torque, &q, r));
+    write_matrix(regulator.map(|Lqr { gain, cost_to_go }| (cost_to_go, gain)))
 }
 
 /// A planner with memory for a plan.
@@ -142,6 +167,14 @@ pub extern "C" fn read_knot(planner: &Planner, step: usize) {
     }
 }
 
+/// Sets a knot of the plan to that in the words.
+#[unsafe(no_mangle)]
+pub extern "C" fn set_knot(planner: &mut Planner, step: usize) {
+    if let Some(place) = planner.knots.get_mut(step) {
+        *place = knot();
+    }
+}
+
 /// Plans with a seed of so many words. Writes the length of the plan, or returns 11 if it finds
 /// none.
 #[unsafe(no_mangle)]
@@ -157,12 +190,17 @@ pub extern "C" fn plan(planner: &mut Planner, words: usize, tries: u32) -> u32 {
     }
 }
 
+/// Improves the plan. Writes its cost.
+#[unsafe(no_mangle)]
+pub extern "C" fn improve(planner: &mut Planner, iterations: u32) -> u32 {
+    let cost = planner.planner.improve(state(), iterations, &mut planner.knots);
+    write(cost.map(|cost| [cost]))
+}
+
 /// The torque that follows the knot in the words, or that of the regulator after a plan.
 #[unsafe(no_mangle)]
 pub extern "C" fn follow(planner: &Planner, is_planned: bool) -> f32 {
-    let [a, b, c, d, torque, gain @ ..] = numbers::<9>(0);
-    let mut knot = Knot::open(torque);
-    (knot.state, knot.gain) = ([a, b, c, d].into(), gain);
+    let knot = knot();
     let plan = if is_planned { slice::from_ref(&knot) } else { &[] };
     planner.planner.follow(plan, 0, state())
 }

@@ -53,7 +53,9 @@ class Environment(dm_env.Environment):
         random: int | np.random.RandomState | None = None,
         time_limit: float = 10.0,
         control_timestep: float | None = None,
+        n_sub_steps: float | None = None,
         flat_observation: bool = False,
+        legacy_step: bool = True,
         **parameters: Any,
     ) -> None:
         """Make an environment.
@@ -63,21 +65,29 @@ class Environment(dm_env.Environment):
             random: The seed of the initial states, or their generator.
             time_limit: The length of an episode, s; ``math.inf`` for no limit.
             control_timestep: The duration of a step, s: a multiple of ``dt``, by default ``dt``.
+            n_sub_steps: Instead, this multiple.
             flat_observation: Whether the observation is one array, ``"observations"``.
+            legacy_step: ``True``: observations and rewards are of the new state.
             **parameters: Those of :class:`acrobot_rs.AcrobotSwingupEnv`.
         """
         if task_name not in _TASKS:
             raise must_be("task_name", f"one of {list(_TASKS)}", repr(task_name))
         if not time_limit > 0:
             raise must_be("time_limit", "above 0 s", time_limit)
+        if not legacy_step:
+            raise must_be("legacy_step", "True, for observations of the new state", legacy_step)
+        if control_timestep is not None and n_sub_steps is not None:
+            raise must_be("n_sub_steps", "None with control_timestep", n_sub_steps)
         is_generator = isinstance(random, np.random.RandomState)
         self._random = random if is_generator else np.random.RandomState(random)
         #: The same environment for Gymnasium, which has the parameters and ``state``.
         self.gymnasium = _TASKS[task_name](**parameters)
-        steps = 1.0 if control_timestep is None else control_timestep / self.gymnasium.dt
-        self._sub_steps = round(steps)
-        if self._sub_steps < 1 or abs(steps - self._sub_steps) > 1e-8:
-            raise must_be("control_timestep / dt", "an integer of at least 1", steps)
+        if n_sub_steps is None:
+            n_sub_steps = 1 if control_timestep is None else control_timestep / self.gymnasium.dt
+        self._sub_steps = round(n_sub_steps)
+        if self._sub_steps < 1 or abs(n_sub_steps - self._sub_steps) > 1e-8:
+            name = "n_sub_steps or control_timestep / dt"
+            raise must_be(name, "an integer of at least 1", n_sub_steps)
         self._time_limit = time_limit
         self._flat = flat_observation
         self._steps = 0

@@ -1,0 +1,57 @@
+//! The task of one acrobot.
+
+use core::num::NonZeroU32;
+
+use acrobot::arithmetic::{Arithmetic, Numbers};
+use acrobot::rand_core::Rng;
+use acrobot::task::{Balance, Gymnasium, ResetBounds, Seen, Task};
+use acrobot::{Params, State};
+
+/// A value and not a type, so that each function of the header is compiled once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnyTask {
+    Gymnasium,
+    Balance,
+}
+
+impl Task for AnyTask {
+    const NAME: &'static str = "any";
+    const DEFAULT: Self = Self::Gymnasium;
+    const MAX_STEPS: NonZeroU32 = Gymnasium::MAX_STEPS;
+
+    type Observation = [f32; 6];
+
+    fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
+        match self {
+            Self::Gymnasium => Gymnasium.draw(bounds, rng),
+            Self::Balance => Balance.draw(bounds, rng),
+        }
+    }
+
+    #[inline(always)]
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
+        Gymnasium.observe::<A, V>(seen) // also that of `Balance`
+    }
+
+    #[inline(always)]
+    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
+        match self {
+            Self::Gymnasium => Gymnasium.ended::<A, V>(seen),
+            Self::Balance => Balance.ended::<A, V>(seen),
+        }
+    }
+
+    #[inline(always)]
+    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        seen: &Seen<V>,
+        params: &Params<V>,
+        torque: V,
+        ended: V::Mask,
+    ) -> V::Single {
+        match self {
+            Self::Gymnasium => Gymnasium.reward::<A, V>(seen, params, torque, ended),
+            Self::Balance => Balance.reward::<A, V>(seen, params, torque, ended),
+        }
+    }
+}
