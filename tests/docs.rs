@@ -101,7 +101,7 @@ const IN_PYTHON: [&str; 21] = [
     "FRICTION_2",
     "COULOMB_1",
     "COULOMB_2",
-    "rotor",
+    "ROTOR",
 ];
 
 /// The comment on a declaration's line and on those above it has the unit and the range, or says

@@ -49,7 +49,7 @@ let slots;
 export function parameters() {
   if (!slots) {
     wasm().param_names();
-    const numbers = Array.from({ length: 18 }, (_, i) => camelCase(text(2 * i)));
+    const numbers = Array.from({ length: 21 }, (_, i) => camelCase(text(2 * i)));
     slots = [...numbers, "dynamics"];
   }
   return slots;
@@ -91,7 +91,7 @@ export function accept(kind, given) {
   if (kind === 3) throw invalid(shared, false, ["boolean"]);
   const [value] = numbers();
   const name = camelCase(text(1));
-  const friction = '0 in the task "acrobot", in N m s/rad';
+  const friction = `0 in the task "acrobot", in ${text(5)}`;
   const rule = text(3).startsWith("0 unless") ? friction : `${text(3)} ${text(5)}`;
   // What the caller gave, before it was rounded.
   const all = [given[name], given[`${name}[0]`], given[`${name}[1]`]].flat();

@@ -67,7 +67,7 @@ fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<Py
 
 /// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both
 /// moments of inertia.
-const NAMES: [&str; 18] = [
+const NAMES: [&str; 21] = [
     "LINK_LENGTH_1",
     "LINK_LENGTH_2",
     "LINK_MASS_1",
@@ -86,6 +86,9 @@ const NAMES: [&str; 18] = [
     "torque_noise_max",
     "FRICTION_1",
     "FRICTION_2",
+    "COULOMB_1",
+    "COULOMB_2",
+    "ROTOR",
 ];
 
 /// The places of a parameter among the numbers.

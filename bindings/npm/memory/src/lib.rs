@@ -47,8 +47,8 @@ pub unsafe fn zeros<T>(count: usize) -> Option<Vec<T>> {
     }
 }
 
-/// 18 draws have 5 words each. Seeds, with up to 64, and others are shorter.
-const LEN: usize = 90;
+/// 21 draws have 5 words each. Seeds, with up to 64, and others are shorter.
+const LEN: usize = 105;
 
 thread_local! {
     static WORDS: Cell<[u32; LEN]> = const { Cell::new([0; LEN]) };
@@ -104,8 +104,9 @@ pub fn changed(mut params: Params<f32>, mask: u32) -> Params<f32> {
             *number = given;
         }
     }
-    if is_given(18) {
-        params.dynamics = if numbers[18] == 0.0 { Dynamics::Book } else { Dynamics::Nips };
+    const DYNAMICS: usize = 21; // comes after the numbers
+    if is_given(DYNAMICS) {
+        params.dynamics = if numbers[DYNAMICS] == 0.0 { Dynamics::Book } else { Dynamics::Nips };
     }
     params
 }
