@@ -16,7 +16,7 @@ const COST = [
   "below", "height", "margin", "arrival",
 ];
 /** The first words of a regulator's weights and of a state. */
-const [WEIGHTS, STATE_WORD] = [19, 64];
+const [WEIGHTS, STATE_WORD] = [22, 64];
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
 
 /** Rust's messages, by the kind of error less 4. */
@@ -102,11 +102,11 @@ function knotOf(plan, step) {
 export class Planner extends Kept {
   constructor(params, limit, cost = {}) {
     const names = parameters();
-    const given = { ...readSlots("params", params, names), ...readSlots("cost", cost, COST) };
+    const [given, weights] = [readSlots("params", params, names), readSlots("cost", cost, COST)];
     const what = "the largest torque";
     checkNumber(what, limit);
-    const mask = writeSlots(given, [...names, ...COST]);
-    acceptAll(wasm().make(mask, limit), { ...given, [what]: limit });
+    const masks = [writeSlots(given, names), writeSlots(weights, COST, WEIGHTS)];
+    acceptAll(wasm().make(...masks, limit), { ...given, ...weights, [what]: limit });
     super("planner", allocated("planners", 1, integers()[0]));
   }
 

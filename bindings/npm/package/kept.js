@@ -66,8 +66,11 @@ export function readSlots(what, object, slots) {
   return Object.fromEntries(entries);
 }
 
-/** Writes values by their names in `slots`, with `dynamics` as its index. Returns their mask. */
-export function writeSlots(given, slots) {
+/**
+ * Writes values by their names in `slots`, with `dynamics` as its index, from a word on. Returns
+ * their mask.
+ */
+export function writeSlots(given, slots, from = 0) {
   for (const [name, value] of Object.entries(given)) {
     if (name === "dynamics") given[name] = indexOf(name, DYNAMICS, value);
     else checkNumber(name, value);
@@ -75,7 +78,7 @@ export function writeSlots(given, slots) {
   let mask = 0;
   for (const [name, value] of Object.entries(given)) {
     const slot = slots.indexOf(name);
-    numbers()[slot] = value;
+    numbers()[from + slot] = value;
     mask |= 1 << slot;
   }
   return mask;

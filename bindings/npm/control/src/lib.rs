@@ -16,7 +16,7 @@ use memory::{changed, keep, seed, set, set_numbers, text, zeros};
 
 /// The first words of the weights of a cost or a regulator, after the parameters, and of a state,
 /// after the longest seed.
-const WEIGHTS: usize = 19;
+const WEIGHTS: usize = 22;
 const STATE: usize = 64;
 
 #[unsafe(no_mangle)]
@@ -123,19 +123,19 @@ fn cost(params: &Params<f32>, mask: u32) -> Cost<f32> {
         &mut cost.arrival,
     ];
     for (i, (weight, given)) in weights.into_iter().zip(numbers::<11>(WEIGHTS)).enumerate() {
-        if mask >> (WEIGHTS + i) & 1 != 0 {
+        if mask >> i & 1 != 0 {
             *weight = given;
         }
     }
     cost
 }
 
-/// Makes a planner with the parameters and weights in the mask. Writes its address, or 0 without
-/// memory.
+/// Makes a planner with the parameters in the mask and the weights in the other one. Writes its
+/// address, or 0 without memory.
 #[unsafe(no_mangle)]
-pub extern "C" fn make(mask: u32, limit: f32) -> u32 {
+pub extern "C" fn make(mask: u32, weights: u32, limit: f32) -> u32 {
     let params = changed(Params::DEFAULT, mask);
-    match control::Planner::with_cost(params, limit, cost(&params, mask)) {
+    match control::Planner::with_cost(params, limit, cost(&params, weights)) {
         Ok(planner) => {
             let planner = keep(Planner { planner, knots: Vec::new() });
             set(&[planner.map_or(0, |planner| Box::into_raw(planner).addr() as u32)]);
