@@ -153,21 +153,20 @@ impl Evidence {
             *sum = if at(is_free, i) { *sum * at(&scales, i) } else { 0.0 };
         }
         let vectors = diagonalize(&mut scaled);
-        let (mut values, mut inverse, mut undetermined) = ([0.0; N], [0.0; N], 0);
+        let (mut values, mut inverse, mut undetermined) = ([0.0; N], [0.0; N], N);
         let mut weakest = ([0.0; N], f64::INFINITY);
         for (i, vector) in vectors.iter().enumerate() {
             let evidence = scaled.get(i).map_or(0.0, |row| at(row, i));
             if evidence < weakest.1 {
                 weakest = (*vector, evidence);
             }
-            if !(evidence > UNDETERMINED) {
-                undetermined += 1;
-                continue;
-            }
-            let along: f64 = vector.iter().zip(&sums).map(|(x, y)| x * y).sum();
-            for ((value, inverse), x) in values.iter_mut().zip(&mut inverse).zip(vector) {
-                *value += x * along / evidence;
-                *inverse += x * x / evidence;
+            if evidence > UNDETERMINED {
+                undetermined -= 1;
+                let along: f64 = vector.iter().zip(&sums).map(|(x, y)| x * y).sum();
+                for ((value, inverse), x) in values.iter_mut().zip(&mut inverse).zip(vector) {
+                    *value += x * along / evidence;
+                    *inverse += x * x / evidence;
+                }
             }
         }
         let fits: f64 = values.iter().zip(&sums).map(|(x, y)| x * y).sum();

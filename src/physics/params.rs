@@ -296,11 +296,12 @@ for_f32_and_f64! {
             let on_the_joint = "above 0 if the centre of mass is on the joint, in";
             let [upper, link2, coupling] = self.inertias();
             let most = self.rotor.abs() + coupling;
+            let is_definite = upper * link2 > most * most; // false for NaN
             let (name, value, rule) = if self.inertia1 + self.mass1 * lc1 * lc1 <= 0.0 {
                 ("inertia1", self.inertia1, on_the_joint)
             } else if self.inertia2 + self.mass2 * lc2 * lc2 <= 0.0 {
                 ("inertia2", self.inertia2, on_the_joint)
-            } else if self.rotor != 0.0 && !(upper * link2 > most * most) {
+            } else if self.rotor != 0.0 && !is_definite {
                 ("rotor", self.rotor, "so small that the mass matrix is positive definite, in")
             } else {
                 return Ok(());
