@@ -5,14 +5,16 @@
 //! the predicted angles. After a push the velocities are in doubt, but not the parameters.
 
 use super::error::ControlError;
-use super::linearize::MassMatrix;
+use super::linearize::{LinearModel, MassMatrix};
 use super::linearize_step::linearize_step;
-use super::matrix::{Matrix, add_scaled, apply, transpose};
+use super::matrix::{Matrix, add_scaled, apply, diagonal, transpose};
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::Real;
 use crate::math::sealed::Sealed as _;
-use crate::physics::{Model, Params, Pendulum, State, directions, dry_friction, sin_cos, wrap};
+use crate::physics::{
+    Model, Params, Pendulum, State, directions, dry_friction, saturate, sin_cos, wrap,
+};
 
 /// The standard deviation of the velocities at first, rad/s.
 const AT_FIRST: f64 = 10.0;
@@ -20,6 +22,10 @@ const AT_FIRST: f64 = 10.0;
 const PUSH: f64 = 6.0;
 /// The deviation of a parameter grows in each step by this part of the first one.
 const DRIFT: f64 = 3e-5;
+/// The variance of the torque is between these parts of the given one. At first it is the most, so
+/// that wrong parameters do not count as motion.
+const LEAST_NOISE: f64 = 1e-2;
+const MOST_NOISE: f64 = 1e4;
 /// An estimated parameter differs from the given one by at most so many deviations.
 const MOST: f64 = 4.0;
 
@@ -58,16 +64,22 @@ pub struct Noise<S = f64> {
 pub struct Estimator<A: Arithmetic, const K: usize = 0> {
     model: Pendulum<A>,
     given: Params<A::Scalar>,
-    deviations: [A::Scalar; K],
     noise: Noise<A::Scalar>,
     /// The variance of the torque, (N m)².
     torque: A::Scalar,
-    /// The covariances of the state, those of each parameter with the state, and of the parameters.
-    of_state: Matrix<A::Scalar>,
-    with_state: [[A::Scalar; 4]; K],
-    of_params: [[A::Scalar; K]; K],
-    /// Whether an angle was measured.
-    is_started: bool,
+    /// The covariances of the state. `None` before a measurement.
+    of_state: Option<Matrix<A::Scalar>>,
+    parameters: [Parameter<A::Scalar, K>; K],
+}
+
+/// What is known of a parameter.
+#[derive(Clone, Copy, Debug)]
+struct Parameter<S, const K: usize> {
+    /// The standard deviation at first.
+    deviation: S,
+    /// The covariances with the state, and with each parameter.
+    with_state: [S; 4],
+    with_params: [S; K],
 }
 
 impl<A: Arithmetic> Estimator<A> {
@@ -81,9 +93,19 @@ impl<A: Arithmetic> Estimator<A> {
     }
 }
 
+/// The parameters that can be estimated: all that a motion tells.
+const PARAMETERS: usize = 10;
+
+/// Those among the numbers of the parameters.
+fn estimated<T>(numbers: [T; 21]) -> [T; PARAMETERS] {
+    let [length1, _, mass1, mass2, _, _, inertia1, inertia2, others @ ..] = numbers;
+    let [.., viscous1, viscous2, coulomb1, coulomb2, rotor] = others;
+    [mass1, mass2, length1, inertia1, inertia2, viscous1, viscous2, coulomb1, coulomb2, rotor]
+}
+
 impl<A: Arithmetic> Estimator<A, PARAMETERS> {
     /// An estimator of the state and of the parameters `mass1`, `mass2`, `length1`, `inertia1`,
-    /// `inertia2`, `rotor`, `friction` and `coulomb`, given the standard deviation of each in its
+    /// `inertia2`, `friction`, `coulomb` and `rotor`, given the standard deviation of each in its
     /// unit; one of 0 is known. Other fields of `deviations` do not count.
     ///
     /// # Errors
@@ -92,50 +114,20 @@ impl<A: Arithmetic> Estimator<A, PARAMETERS> {
     /// friction or of the rotor in an arithmetic without friction.
     pub fn with_params(
         params: Params<A::Scalar>,
-        mut deviations: Params<A::Scalar>,
+        deviations: Params<A::Scalar>,
         noise: Noise<A::Scalar>,
     ) -> Result<Self, Error> {
-        const NAMES: [&str; PARAMETERS] = [
-            "mass1",
-            "mass2",
-            "length1",
-            "inertia1",
-            "inertia2",
-            "rotor",
-            "friction.joint1",
-            "friction.joint2",
-            "coulomb.joint1",
-            "coulomb.joint2",
-        ];
-        let deviations = fields(&mut deviations).map(|x| *x);
-        for (i, (name, deviation)) in NAMES.into_iter().zip(deviations).enumerate() {
-            let (value, unit) = (deviation.to_f64(), "times its unit");
+        let deviations = estimated(deviations.numbers());
+        for (i, (name, deviation)) in deviations.into_iter().enumerate() {
+            let (value, unit) = (deviation.to_f64(), "its unit");
             Range::AtLeastZero.check(name, value, unit)?;
             if i >= 5 && !A::HAS_FRICTION && value > 0.0 {
                 let rule = "known unless the arithmetic is Damped, in";
                 return Err(Error::OutOfRange { name, value, unit, rule });
             }
         }
-        Self::build(params, noise, deviations)
+        Self::build(params, noise, deviations.map(|(_, deviation)| deviation))
     }
-}
-
-/// The parameters that can be estimated: all that the motion tells.
-const PARAMETERS: usize = 10;
-
-fn fields<S>(params: &mut Params<S>) -> [&mut S; PARAMETERS] {
-    [
-        &mut params.mass1,
-        &mut params.mass2,
-        &mut params.length1,
-        &mut params.inertia1,
-        &mut params.inertia2,
-        &mut params.rotor,
-        &mut params.friction.joint1,
-        &mut params.friction.joint2,
-        &mut params.coulomb.joint1,
-        &mut params.coulomb.joint2,
-    ]
 }
 
 impl<A: Arithmetic, const K: usize> Estimator<A, K> {
@@ -150,22 +142,21 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         Range::AboveZero.check("angle", noise.angle.to_f64(), "rad")?;
         Range::AboveZero.check("torque", noise.torque.to_f64(), "N m")?;
         let zero = A::Scalar::ZERO;
-        let mut of_params = [[zero; K]; K];
-        for (i, (row, deviation)) in of_params.iter_mut().zip(deviations).enumerate() {
-            if let Some(place) = row.get_mut(i) {
-                *place = deviation * deviation;
-            }
+        let mut parameters = deviations.map(|deviation| Parameter {
+            deviation,
+            with_state: [zero; 4],
+            with_params: [zero; K],
+        });
+        for (i, parameter) in parameters.iter_mut().enumerate() {
+            parameter.doubt(i, parameter.deviation);
         }
         Ok(Self {
             model: Pendulum::new(params, State::HANGING)?,
             given: params,
-            deviations,
             noise,
-            torque: noise.torque * noise.torque * A::Scalar::from_f64(1e4),
-            of_state: [[zero; 4]; 4],
-            with_state: [[zero; 4]; K],
-            of_params,
-            is_started: false,
+            torque: noise.torque * noise.torque * A::Scalar::from_f64(MOST_NOISE),
+            of_state: None,
+            parameters,
         })
     }
 
@@ -181,11 +172,10 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         self.model.params()
     }
 
-    /// The standard deviations of the state, rad and rad/s.
+    /// The standard deviations of the state, rad and rad/s. `None` before a measurement.
     #[must_use]
-    pub fn deviations(&self) -> [A::Scalar; 4] {
-        let [a, b, c, d] = &self.of_state;
-        [a[0], b[1], c[2], d[3]].map(A::Scalar::sqrt)
+    pub fn deviations(&self) -> Option<[A::Scalar; 4]> {
+        self.of_state.as_ref().map(|covariances| diagonal(covariances).map(A::Scalar::sqrt))
     }
 
     /// Corrects the estimate by measured angles θ1 and θ2, rad. The first ones are taken as they
@@ -195,171 +185,139 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
     ///
     /// An angle is not finite.
     pub fn measure(&mut self, [theta1, theta2]: [A::Scalar; 2]) -> Result<(), Error> {
-        let [zero, of_angle, of_velocity] =
-            [A::Scalar::ZERO, self.noise.angle, A::Scalar::from_f64(AT_FIRST)].map(|x| x * x);
+        let zero = A::Scalar::ZERO;
         let measured = State { theta1, theta2, dtheta1: zero, dtheta2: zero };
         measured.validate()?;
-        if !self.is_started {
-            self.of_state = [
-                [of_angle, zero, zero, zero],
-                [zero, of_angle, zero, zero],
-                [zero, zero, of_velocity, zero],
-                [zero, zero, zero, of_velocity],
-            ];
-            self.is_started = true;
-            return self.model.set_state(measured);
+        match self.of_state {
+            None => {
+                let noises = [self.noise.angle, A::Scalar::from_f64(AT_FIRST)];
+                let [angle, velocity] = noises.map(|x| x * x);
+                self.of_state = Some(spread([angle, angle, velocity, velocity]));
+                self.model.set_state(measured)
+            }
+            Some(of_state) => {
+                let of_state = self.correct::<0>(theta1, of_state);
+                self.of_state = Some(self.correct::<1>(theta2, of_state));
+                Ok(())
+            }
         }
-        self.correct::<0>(theta1);
-        self.correct::<1>(theta2);
-        Ok(())
     }
 
-    /// Corrects by the angle of joint `I`.
+    /// Corrects by the angle of joint `I`. Returns the covariances of the state.
     #[expect(clippy::indexing_slicing, reason = "I is 0 or 1")]
-    fn correct<const I: usize>(&mut self, angle: A::Scalar) {
+    fn correct<const I: usize>(
+        &mut self,
+        angle: A::Scalar,
+        mut of_state: Matrix<A::Scalar>,
+    ) -> Matrix<A::Scalar> {
         let number = A::Scalar::from_f64;
         let mut y: [A::Scalar; 4] = self.model.state().into();
         let error = wrap(angle - y[I]);
         let square = error * error;
         let of_angle = self.noise.angle * self.noise.angle;
-        let ratio = square / (self.of_state[I][I] + of_angle);
+        let ratio = square / (of_state[I][I] + of_angle);
         self.follow(ratio);
         if ratio > number(PUSH * PUSH) {
-            self.doubt_velocities(square);
+            // The velocities are in doubt by as much as the error needs in one step.
+            let dt = self.model.params().dt;
+            let of_velocity = square / (dt * dt);
+            let [of_angle1, of_angle2, ..] =
+                diagonal(&of_state).map(|x| if x > square { x } else { square });
+            of_state = spread([of_angle1, of_angle2, of_velocity, of_velocity]);
+            self.parameters.iter_mut().for_each(|x| x.with_state = [A::Scalar::ZERO; 4]);
         }
-        let row = self.of_state[I];
+
+        let row = of_state[I];
         let inverse = A::Scalar::ONE / (row[I] + of_angle);
         let gain = row.map(|x| x * inverse);
         add_scaled(&mut y, error, &gain);
-        for (covariances, x) in self.of_state.iter_mut().zip(row) {
+        for (covariances, x) in of_state.iter_mut().zip(row) {
             add_scaled(covariances, -x, &gain);
         }
-        let with_angle = self.with_state.map(|x| x[I]);
-        for (covariances, x) in self.with_state.iter_mut().zip(with_angle) {
-            add_scaled(covariances, -x, &gain);
-        }
+        let with_angle = self.parameters.map(|parameter| parameter.with_state[I]);
         let mut params = *self.model.params();
-        let mut given = self.given;
-        let places = fields(&mut params).into_iter().zip(fields(&mut given));
-        let rows = self.of_params.iter_mut().zip(self.deviations);
-        for ((row, deviation), (x, (place, given))) in rows.zip(with_angle.into_iter().zip(places))
+        let places =
+            estimated(params.numbers_mut()).into_iter().zip(estimated(self.given.numbers()));
+        for ((parameter, x), (place, (name, given))) in
+            self.parameters.iter_mut().zip(with_angle).zip(places)
         {
-            let gain = x * inverse;
-            for (covariance, x) in row.iter_mut().zip(with_angle) {
-                *covariance = *covariance - gain * x;
+            add_scaled(&mut parameter.with_state, -x, &gain);
+            let part = x * inverse;
+            for (covariance, x) in parameter.with_params.iter_mut().zip(with_angle) {
+                *covariance = *covariance - part * x;
             }
-            let most = number(MOST) * deviation;
-            let changed = *place + gain * error - *given;
-            *place = *given
-                + if changed > most {
-                    most
-                } else if changed < -most {
-                    -most
-                } else {
-                    changed
-                };
-        }
-        // A friction below 0 is 0, and what has no valid parameters keeps the former ones.
-        for friction in [&mut params.friction, &mut params.coulomb] {
-            for place in [&mut friction.joint1, &mut friction.joint2] {
-                if *place < A::Scalar::ZERO {
-                    *place = A::Scalar::ZERO;
-                }
+            let most = number(MOST) * parameter.deviation;
+            *place = given + saturate(*place + part * error - given, most);
+            if *place < A::Scalar::ZERO && name != "rotor" {
+                *place = A::Scalar::ZERO;
             }
         }
+        // Parameters that no machine has change nothing.
         let _ = self.model.set_params(params);
-        let _ = self.model.set_state(State::from(y));
+        let _ = self.model.set_state(y.into());
+        of_state
     }
 
     /// Lets the variance of the torque follow the square of an error, relative to its variance.
     fn follow(&mut self, ratio: A::Scalar) {
         let number = A::Scalar::from_f64;
-        let most = number(12.0);
-        let ratio = if ratio < most { ratio } else { most };
+        let within = |x, low, high| {
+            if x < low {
+                low
+            } else if x > high {
+                high
+            } else {
+                x
+            }
+        };
+        let ratio = within(ratio, A::Scalar::ZERO, number(12.0));
         let torque = self.torque * (A::Scalar::ONE + number(0.02) * (ratio - A::Scalar::ONE));
         let given = self.noise.torque * self.noise.torque;
-        let (low, high) = (given * number(1e-2), given * number(1e4));
-        self.torque = if torque < low {
-            low
-        } else if torque > high {
-            high
-        } else {
-            torque
-        };
+        self.torque = within(torque, given * number(LEAST_NOISE), given * number(MOST_NOISE));
     }
 
-    /// Forgets the velocities, which a push changed, given the square of an error, rad².
-    fn doubt_velocities(&mut self, square: A::Scalar) {
-        let zero = A::Scalar::ZERO;
-        let dt = self.model.params().dt;
-        let of_velocity = square / (dt * dt);
-        let [[a, b, ..], [c, d, ..], ..] = self.of_state;
-        let larger = |x| if x > square { x } else { square };
-        self.of_state = [
-            [larger(a), b, zero, zero],
-            [c, larger(d), zero, zero],
-            [zero, zero, of_velocity, zero],
-            [zero, zero, zero, of_velocity],
-        ];
-        self.with_state = [[zero; 4]; K];
-    }
-
-    /// Takes a step of `dt` with a torque, N m.
+    /// Takes a step of `dt` with a torque, N m. Before a measurement it does nothing.
     ///
     /// # Errors
     ///
     /// The torque is not finite, or a derivative overflows.
     pub fn step(&mut self, torque: A::Scalar) -> Result<(), ControlError> {
         let number = A::Scalar::from_f64;
-        let linear = linearize_step(&self.model, torque)?;
+        let LinearModel { a, b } = linearize_step(&self.model, torque)?;
+        let Some(of_state) = self.of_state else { return Ok(()) };
         let before: [A::Scalar; 4] = self.model.state().into();
         self.model.step(torque)?;
-        let by_params: [[A::Scalar; 4]; K] = self.slopes(before);
 
-        // A P Aᵀ, and the parts of the parameters.
-        let half = transpose(&self.of_state.map(|row| apply(&linear.a, &row)));
-        let mut of_state = half.map(|row| apply(&linear.a, &row));
-        for (i, covariances) in self.with_state.iter_mut().enumerate() {
-            let moved = apply(&linear.a, covariances);
-            let mut next = moved;
-            for (slopes, row) in by_params.iter().zip(&self.of_params) {
-                if let Some(x) = row.get(i) {
-                    add_scaled(&mut next, *x, slopes);
-                }
+        // A P Aᵀ, and the parts of the parameters and of the torque.
+        let half = transpose(&of_state.map(|row| apply(&a, &row)));
+        let mut of_state = half.map(|row| apply(&a, &row));
+        let slopes: [[A::Scalar; 4]; K] = self.slopes(before);
+        for (i, (parameter, slope)) in self.parameters.iter_mut().zip(&slopes).enumerate() {
+            let moved = apply(&a, &parameter.with_state);
+            parameter.with_state = moved;
+            for (slope, x) in slopes.iter().zip(&parameter.with_params) {
+                add_scaled(&mut parameter.with_state, *x, slope);
             }
-            *covariances = next;
-            if let Some(slopes) = by_params.get(i) {
-                for (row, (moved, slope)) in of_state.iter_mut().zip(moved.into_iter().zip(slopes))
-                {
-                    add_scaled(row, moved, slopes);
-                    add_scaled(row, *slope, &next);
-                }
+            for (row, (moved, x)) in of_state.iter_mut().zip(moved.into_iter().zip(slope)) {
+                add_scaled(row, moved, slope);
+                add_scaled(row, *x, &parameter.with_state);
             }
+            parameter.doubt(i, number(DRIFT) * parameter.deviation);
+        }
+        for (row, x) in of_state.iter_mut().zip(b) {
+            add_scaled(row, self.torque * x, &b);
         }
         // What the model does not say, and rounding.
-        let angle = number(1e-6) * number(1e-6);
-        let velocity = number(1e-3) * number(1e-3);
-        for (row, b) in of_state.iter_mut().zip(linear.b) {
-            add_scaled(row, self.torque * b, &linear.b);
+        let [angle, velocity] = [1e-6, 1e-3].map(|x| number(x * x));
+        let [one, half] = [A::Scalar::ONE, A::Scalar::HALF];
+        let (transposed, noise) =
+            (transpose(&of_state), spread([angle, angle, velocity, velocity]));
+        for (row, (other, noise)) in of_state.iter_mut().zip(transposed.iter().zip(&noise)) {
+            *row = row.map(|x| x * half);
+            add_scaled(row, half, other);
+            add_scaled(row, one, noise);
         }
-        let [a, b, c, d] = &mut of_state;
-        let noises = [angle, angle, velocity, velocity];
-        for (place, noise) in [&mut a[0], &mut b[1], &mut c[2], &mut d[3]].into_iter().zip(noises) {
-            *place = *place + noise;
-        }
-        for (i, (row, deviation)) in self.of_params.iter_mut().zip(self.deviations).enumerate() {
-            let drift = number(DRIFT) * deviation;
-            if let Some(place) = row.get_mut(i) {
-                *place = *place + drift * drift;
-            }
-        }
-        // Symmetric, also after rounding.
-        let transposed = transpose(&of_state);
-        for (row, other) in of_state.iter_mut().zip(&transposed) {
-            *row = row.map(|x| x * A::Scalar::HALF);
-            add_scaled(row, A::Scalar::HALF, other);
-        }
-        self.of_state = of_state;
+        self.of_state = Some(of_state);
         Ok(())
     }
 
@@ -367,24 +325,37 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
     /// accelerations in the middle of the step.
     fn slopes(&self, before: [A::Scalar; 4]) -> [[A::Scalar; 4]; K] {
         let mut slopes = [[A::Scalar::ZERO; 4]; K];
-        if K == 0 {
-            return slopes;
-        }
-        let model = self.model.model();
-        let (half, dt) = (model.constants.half_dt, model.params.dt);
-        let [_, _, dtheta1, dtheta2]: [A::Scalar; 4] = self.model.state().into();
-        let [theta1, theta2, before1, before2] = before;
-        let middle = |x, y| (x + y) * A::Scalar::HALF;
-        let rates = [middle(before1, dtheta1), middle(before2, dtheta2)];
-        let angles = [theta1 + half * rates[0], theta2 + half * rates[1]];
-        let accelerations = [(dtheta1 - before1) / dt, (dtheta2 - before2) / dt];
-        for (place, [by1, by2]) in
-            slopes.iter_mut().zip(by_params::<A>(model, angles, rates, accelerations))
-        {
-            *place = [half * (dt * by1), half * (dt * by2), dt * by1, dt * by2];
+        if K > 0 {
+            let model = self.model.model();
+            let (half, dt) = (model.constants.half_dt, model.params.dt);
+            let [_, _, dtheta1, dtheta2]: [A::Scalar; 4] = self.model.state().into();
+            let [theta1, theta2, before1, before2] = before;
+            let rates =
+                [(before1, dtheta1), (before2, dtheta2)].map(|(x, y)| (x + y) * A::Scalar::HALF);
+            let angles = [theta1 + half * rates[0], theta2 + half * rates[1]];
+            let accelerations = [(dtheta1 - before1) / dt, (dtheta2 - before2) / dt];
+            let found = by_params::<A>(model, angles, rates, accelerations);
+            for (slope, [by1, by2]) in slopes.iter_mut().zip(found) {
+                *slope = [half * (dt * by1), half * (dt * by2), dt * by1, dt * by2];
+            }
         }
         slopes
     }
+}
+
+impl<S: Real, const K: usize> Parameter<S, K> {
+    /// Adds a standard deviation to that of this parameter, which is at place `i`.
+    fn doubt(&mut self, i: usize, deviation: S) {
+        if let Some(own) = self.with_params.get_mut(i) {
+            *own = *own + deviation * deviation;
+        }
+    }
+}
+
+/// A matrix with this diagonal.
+fn spread<S: Real>([a, b, c, d]: [S; 4]) -> Matrix<S> {
+    let o = S::ZERO;
+    [[a, o, o, o], [o, b, o, o], [o, o, c, o], [o, o, o, d]]
 }
 
 /// The derivatives of \[θ̈1, θ̈2\] by each parameter: M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
@@ -423,11 +394,11 @@ fn by_params<A: Arithmetic>(
         ],
         [-ddtheta1, zero],
         [zero, -ddbeta],
-        [ddbeta, ddtheta1],
         [-dtheta1, zero],
         [dtheta2, -dtheta2],
         [-dry1, zero],
         [dry2, -dry2],
+        [ddbeta, ddtheta1],
     ]
     .map(|forces| mass.solve(forces))
 }

@@ -75,7 +75,7 @@ fn follow<A: Arithmetic>() -> (f64, f64) {
         if tick > 100 {
             let found = estimator.state().cast::<f64>();
             let errors = difference(found, machine.pendulum.state());
-            for (error, deviation) in errors.iter().zip(estimator.deviations()).skip(2) {
+            for (error, deviation) in errors.iter().zip(estimator.deviations().unwrap()).skip(2) {
                 squares += error * error;
                 within += f64::from(u8::from(error.abs() < 2.0 * deviation.to_f64()));
                 count += 1.0;
