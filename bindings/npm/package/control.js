@@ -1,4 +1,4 @@
-// Linear models, regulators and a planner, in a separate module. control.d.ts describes the interface.
+// Linear models, regulators and a planner, in a separate module, as control.d.ts describes them.
 
 import {
   Kept, STATE, accept, allocated, call, checkNumber, checkedState, elements, isFinite32, isNumber,

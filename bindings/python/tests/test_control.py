@@ -121,6 +121,7 @@ def test_a_search_can_be_interrupted_or_find_no_plan():
     with pytest.raises(RuntimeError, match="found no plan that ends upright in 41 tries"):
         planner.plan([0, 0, 0, 0], steps=50, tries=41, progress=calls.append)
     assert calls == [40, 41]
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background of a shell
     with pytest.raises(KeyboardInterrupt):
         planner.plan([0, 0, 0, 0], steps=50, progress=lambda _: signal.raise_signal(signal.SIGINT))
 
