@@ -144,7 +144,7 @@ fn the_files_that_the_pages_name_exist() {
             }
         }
     }
-    assert!(count > 30, "{count}");
+    assert!(count > 38, "{count}");
 }
 
 /// A block that is not compiled with the crate names the file that it is from: "```rust,ignore
