@@ -5,7 +5,6 @@ use core::ops::{Add, Mul};
 
 use super::error::ControlError;
 use crate::math::Real;
-use crate::math::sealed::Sealed as _;
 
 /// Rows.
 pub type Matrix<S = f64> = [[S; 4]; 4];
