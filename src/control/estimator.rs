@@ -7,16 +7,17 @@
 use core::array::from_fn;
 
 use super::error::ControlError;
-use super::linearize::{LinearModel, MassMatrix};
-use super::linearize_step::linearize_step;
+use super::linearize::{LinearModel, MassMatrix, linearize};
 use super::matrix::{
-    Matrix, add, add_outer, add_scaled, apply, diagonal, spread, symmetrize, transpose,
+    Matrix, add_outer, add_scaled, apply, diagonal, dot, spread, symmetrize, transpose,
 };
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::Real;
 use crate::math::sealed::Sealed as _;
-use crate::physics::{Params, Pendulum, State, directions, dry_friction, saturate, sin_cos, wrap};
+use crate::physics::{
+    Params, Pendulum, State, directions, dry_friction, plus_scaled, saturate, wrap,
+};
 
 /// The standard deviation of the velocities at first, rad/s.
 const AT_FIRST: f64 = 10.0;
@@ -251,50 +252,57 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
     /// The torque is not finite, or a derivative overflows.
     #[expect(clippy::indexing_slicing, reason = "i is below K")]
     pub fn step(&mut self, torque: A::Scalar) -> Result<(), ControlError> {
-        let LinearModel { a, b } = linearize_step(&self.model, torque)?;
-        let Some(of_state) = self.of_state else { return Ok(()) };
-        let before = self.model.state().into();
-        self.model.step(torque)?;
+        let [zero, one, half] = [A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::HALF];
+        let (mut next, mut middle) = (self.model.clone(), self.model.clone());
+        next.step(torque)?;
+        let Some(mut of_state) = self.of_state else { return Ok(()) };
+        let [theta1, theta2, before1, before2]: [A::Scalar; 4] = middle.state().into();
+        let [_, _, after1, after2]: [A::Scalar; 4] = next.state().into();
+        let [v1, v2] = [(before1 + after1) * half, (before2 + after2) * half];
+        let (dt, half_dt) = (middle.params().dt, middle.model().constants.half_dt);
+        middle.set_state([theta1 + half_dt * v1, theta2 + half_dt * v2, v1, v2].into())?;
+        // What a rate in the middle of the step changes until its end, to the second order in dt.
+        let LinearModel { a, b } = linearize(&middle, torque)?;
+        let mut lasting = a.map(|row| row.map(|x| dt * (half_dt * x)));
+        add_diagonal(&mut lasting, [dt; 4]);
+        let mut after = by_transposed(&lasting, &transpose(&a));
+        add_diagonal(&mut after, [one; 4]);
+        let slopes = self.slopes(&middle, [(after1 - before1) / dt, (after2 - before2) / dt]);
+        let slopes = slopes.map(|[x1, x2]| apply(&lasting, &[zero, zero, x1, x2]));
 
-        // A P Aᵀ, and the parts of the parameters and of the torque.
-        let half = transpose(&of_state.map(|row| apply(&a, &row)));
-        let mut of_state = half.map(|row| apply(&a, &row));
-        let slopes = self.slopes(before);
+        of_state = by_transposed(&by_transposed(&after, &of_state), &after);
         for (i, (parameter, slope)) in self.parameters.iter_mut().zip(&slopes).enumerate() {
-            let moved = apply(&a, &parameter.with_state);
-            parameter.with_state = moved;
-            for (slope, x) in slopes.iter().zip(&parameter.with_params) {
-                add_scaled(&mut parameter.with_state, *x, slope);
+            let moved = apply(&after, &parameter.with_state);
+            let mut change = [zero; 4];
+            for (slope, x) in slopes.iter().zip(parameter.with_params) {
+                change = plus_scaled(change, x, *slope);
             }
-            add_outer(&mut of_state, A::Scalar::ONE, &moved, slope);
-            add_outer(&mut of_state, A::Scalar::ONE, slope, &parameter.with_state);
+            parameter.with_state = plus_scaled(moved, one, change);
+            // Its transpose follows when the matrix becomes symmetric.
+            add_outer(&mut of_state, one + one, slope, &plus_scaled(moved, half, change));
             parameter.with_params[i] = parameter.with_params[i] + parameter.drift;
         }
+        let b = apply(&lasting, &b);
         add_outer(&mut of_state, self.torque, &b, &b);
         symmetrize(&mut of_state);
         let [angle, velocity] = IN_A_STEP.map(|x| A::Scalar::from_f64(x * x));
-        add(&mut of_state, A::Scalar::ONE, &spread([angle, angle, velocity, velocity]));
-        self.of_state = Some(of_state);
+        add_diagonal(&mut of_state, [angle, angle, velocity, velocity]);
+        (self.model, self.of_state) = (next, Some(of_state));
         Ok(())
     }
 
-    /// The derivatives of the last step, from the state before, by each parameter: those of the
-    /// accelerations in its middle, M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
-    fn slopes(&self, before: [A::Scalar; 4]) -> [[A::Scalar; 4]; K] {
+    /// The derivatives of the accelerations of a motion by each parameter: M⁻¹ (∂f/∂p − ∂M/∂p q̈),
+    /// as in `partials`.
+    fn slopes(&self, motion: &Pendulum<A>, accelerations: [A::Scalar; 2]) -> [[A::Scalar; 2]; K] {
         let (zero, one) = (A::Scalar::ZERO, A::Scalar::ONE);
-        let mut slopes = [[zero; 4]; K];
+        let mut slopes = [[zero; 2]; K];
         if K == 0 {
             return slopes;
         }
-        let model = self.model.model();
+        let (model, sines) = (motion.model(), motion.sin_cos());
+        let State { dtheta1, dtheta2, .. } = motion.state();
+        let [ddtheta1, ddtheta2] = accelerations;
         let (params, nips) = (&model.params, model.constants.nips);
-        let (half, dt) = (model.constants.half_dt, params.dt);
-        let [theta1, theta2, before1, before2] = before;
-        let [_, _, after1, after2]: [A::Scalar; 4] = self.model.state().into();
-        let [dtheta1, dtheta2] =
-            [before1 + after1, before2 + after2].map(|sum| sum * A::Scalar::HALF);
-        let [ddtheta1, ddtheta2] = [after1 - before1, after2 - before2].map(|change| change / dt);
-        let sines = sin_cos::<A>([theta1 + half * dtheta1, theta2 + half * dtheta2]);
         let [_, (sin2, cos2)] = sines;
         let [weight1, weight2] = directions(sines).map(|(sin, _)| params.gravity * sin);
         let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
@@ -324,12 +332,20 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
             [ddbeta, ddtheta1],
         ];
         let mass = MassMatrix::new::<A>(model, (sin2, cos2));
-        for (slope, forces) in slopes.iter_mut().zip(forces) {
-            let [change1, change2] = mass.solve(forces).map(|x| dt * x);
-            *slope = [half * change1, half * change2, change1, change2];
-        }
+        slopes.iter_mut().zip(forces).for_each(|(slope, forces)| *slope = mass.solve(forces));
         slopes
     }
+}
+
+#[expect(clippy::indexing_slicing, reason = "i is below 4")]
+fn add_diagonal<S: Real>(m: &mut Matrix<S>, diagonal: [S; 4]) {
+    diagonal.into_iter().enumerate().for_each(|(i, x)| m[i][i] = m[i][i] + x);
+}
+
+/// x yᵀ.
+#[inline(never)] // saves flash
+fn by_transposed<S: Real>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
+    x.map(|row| y.map(|column| dot(row, column)))
 }
 
 fn within<S: Real>(x: S, [least, most]: [S; 2]) -> S {
