@@ -136,12 +136,10 @@ impl<A: Arithmetic> Estimator<A, PARAMETERS> {
         let given = estimated(params.numbers());
         let parameters = from_fn(|i| {
             let ((name, given), (_, deviation)) = (given[i], deviations[i]);
-            let most = A::Scalar::from_f64(MOST) * deviation;
-            let least = given - most;
-            let least = if least < zero && name != "rotor" { zero } else { least };
-            let drift = A::Scalar::from_f64(DRIFT) * deviation;
+            let [most, drift] = [MOST, DRIFT].map(|x| A::Scalar::from_f64(x) * deviation);
+            let is_negative = given - most < zero && name != "rotor";
             Parameter {
-                limits: [least, given + most],
+                limits: [if is_negative { zero } else { given - most }, given + most],
                 drift: drift * drift,
                 with_state: [zero; 4],
                 with_params: from_fn(|j| if i == j { deviation * deviation } else { zero }),
@@ -207,6 +205,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         for (i, angle) in angles.into_iter().enumerate() {
             let error = wrap(angle - y[i]);
             let square = error * error;
+            // The variance of the torque follows the errors.
             let ratio = square / (of_state[i][i] + of_angle);
             let rate = number(0.02) * (saturate(ratio, number(12.0)) - one);
             let limits = OF_TORQUE.map(|part| of_torque * number(part));
@@ -287,49 +286,43 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         symmetrize(&mut of_state);
         let [angle, velocity] = IN_A_STEP.map(|x| A::Scalar::from_f64(x * x));
         add_diagonal(&mut of_state, [angle, angle, velocity, velocity]);
-        (self.model, self.of_state) = (next, Some(of_state));
+        // Where one overflows, the next measurement begins again.
+        let is_finite = of_state.as_flattened().iter().all(|x| x.is_finite());
+        (self.model, self.of_state) = (next, is_finite.then_some(of_state));
         Ok(())
     }
 
-    /// The derivatives of the accelerations of a motion by each parameter: M⁻¹ (∂f/∂p − ∂M/∂p q̈),
-    /// as in `partials`.
-    fn slopes(&self, motion: &Pendulum<A>, accelerations: [A::Scalar; 2]) -> [[A::Scalar; 2]; K] {
-        let (zero, one) = (A::Scalar::ZERO, A::Scalar::ONE);
-        let mut slopes = [[zero; 2]; K];
+    /// The derivatives of the accelerations \[a1, a2\] of a motion by each parameter:
+    /// M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
+    fn slopes(&self, motion: &Pendulum<A>, [a1, a2]: [A::Scalar; 2]) -> [[A::Scalar; 2]; K] {
+        let (o, one) = (A::Scalar::ZERO, A::Scalar::ONE);
+        let mut slopes = [[o; 2]; K];
         if K == 0 {
             return slopes;
         }
         let (model, sines) = (motion.model(), motion.sin_cos());
-        let State { dtheta1, dtheta2, .. } = motion.state();
-        let [ddtheta1, ddtheta2] = accelerations;
+        let State { dtheta1: v1, dtheta2: v2, .. } = motion.state();
         let (params, nips) = (&model.params, model.constants.nips);
+        let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
         let [_, (sin2, cos2)] = sines;
         let [weight1, weight2] = directions(sines).map(|(sin, _)| params.gravity * sin);
-        let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
-        let (dbeta, ddbeta) = (dtheta1 + dtheta2, ddtheta1 + ddtheta2);
+        let [dry1, dry2] = [v1, v2].map(|v| dry_friction::<A, A::Scalar>(model, v).0);
+        let (square, sum) = (v1 * v1, v1 + v2);
         // Of l1 lc2 m2: what the links do to each other.
-        let square = dtheta1 * dtheta1;
-        let on_link1 = sin2 * (dbeta * dbeta - nips * square) - cos2 * ddbeta;
-        let on_link2 = -(sin2 * ((one - nips) * square)) - cos2 * ddtheta1;
-        let [dry1, dry2] =
-            [dtheta1, dtheta2].map(|dtheta| dry_friction::<A, A::Scalar>(model, dtheta).0);
+        let on_link1 = sin2 * (sum * sum - nips * square) - cos2 * (a1 + a2);
+        let on_link2 = -(sin2 * ((one - nips) * square)) - cos2 * a1;
+        let of_tip = lc2 * on_link1 - weight1 - l1 * a1;
         let forces: [[A::Scalar; 2]; PARAMETERS] = [
-            [-(lc1 * (weight1 + lc1 * ddtheta1)), zero],
-            [
-                l1 * (lc2 * on_link1 - weight1 - l1 * ddtheta1),
-                lc2 * (l1 * on_link2 - weight2 - lc2 * ddbeta),
-            ],
-            [
-                params.mass2 * (lc2 * on_link1 - weight1 - (l1 + l1) * ddtheta1),
-                params.mass2 * lc2 * on_link2,
-            ],
-            [-ddtheta1, zero],
-            [zero, -ddbeta],
-            [-dtheta1, zero],
-            [dtheta2, -dtheta2],
-            [-dry1, zero],
+            [-(lc1 * (weight1 + lc1 * a1)), o],
+            [l1 * of_tip, lc2 * (l1 * on_link2 - weight2 - lc2 * (a1 + a2))],
+            [params.mass2 * (of_tip - l1 * a1), params.mass2 * lc2 * on_link2],
+            [-a1, o],
+            [o, -(a1 + a2)],
+            [-v1, o],
+            [v2, -v2],
+            [-dry1, o],
             [dry2, -dry2],
-            [ddbeta, ddtheta1],
+            [a1 + a2, a1],
         ];
         let mass = MassMatrix::new::<A>(model, (sin2, cos2));
         slopes.iter_mut().zip(forces).for_each(|(slope, forces)| *slope = mass.solve(forces));
@@ -349,11 +342,6 @@ fn by_transposed<S: Real>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
 }
 
 fn within<S: Real>(x: S, [least, most]: [S; 2]) -> S {
-    if x < least {
-        least
-    } else if x > most {
-        most
-    } else {
-        x
-    }
+    let x = if x < least { least } else { x };
+    if x > most { most } else { x }
 }
