@@ -3,7 +3,8 @@
 use acrobot::arithmetic::{Arithmetic, Damped, Reference};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Joints, Pendulum};
-use acrobot::{Fast, Params, Portable, State};
+use acrobot::task::{Draw, Draws};
+use acrobot::{Acrobot, Fast, Params, Portable, State};
 use common::text_of;
 
 /// A machine of `realaigym.txt`, and its steps: a state, the torque, the next state.
@@ -79,6 +80,25 @@ fn a_rotor_that_no_machine_has_is_rejected() {
         assert!(message.starts_with(&format!("rotor must be {rule}, got ")), "{message}");
     }
     assert!(params.with_rotor(100.0, 6.0).validate().is_ok());
+}
+
+/// Whatever else is drawn: where both inertias are 1 kg m², any rotor up to 1 kg m² is possible.
+#[test]
+fn drawn_rotors_are_those_of_machines() {
+    let draw = |high| -> Result<(), String> {
+        let rotor = Draw::Uniform { low: 0.0, high };
+        let mass2 = Draw::LogUniform { low: 1e-3, high: 1e3 };
+        let draws = Draws::new(Params { rotor, mass2, ..Draws::FIXED }).unwrap();
+        let mut acrobot = Acrobot::<Damped<Fast>>::new(1);
+        for _ in 0..1000 {
+            acrobot.draw_params(&draws).map_err(|error| error.to_string())?;
+            acrobot.params().validate().unwrap();
+        }
+        Ok(())
+    };
+    assert_eq!(draw(1.0), Ok(()));
+    let error = "rotor must be at most √(inertia1 inertia2) where one is drawn, in kg m², got 1.1";
+    assert!(draw(1.1).unwrap_err().starts_with(error));
 }
 
 /// The energy never grows without a torque, however long the steps are and strong the friction:
