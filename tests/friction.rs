@@ -102,9 +102,9 @@ fn drawn_rotors_are_those_of_machines() {
 }
 
 /// The energy never grows without a torque, however long the steps are and strong the friction:
-/// at rest dry friction holds, and does not shake.
+/// at rest Coulomb friction holds, and does not shake.
 #[test]
-fn dry_friction_holds_in_steps_of_any_length() {
+fn coulomb_friction_holds_in_steps_of_any_length() {
     let mut rng = Pcg64::new(3);
     let mut draw = |low: f64, high: f64| uniform(&mut rng, low, high);
     for _ in 0..2000 {

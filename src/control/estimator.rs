@@ -16,7 +16,7 @@ use crate::error::{Error, Range};
 use crate::math::Real;
 use crate::math::sealed::Sealed as _;
 use crate::physics::{
-    Params, Pendulum, State, directions, dry_friction, plus_scaled, saturate, wrap,
+    Params, Pendulum, State, coulomb_friction, directions, plus_scaled, saturate, wrap,
 };
 
 /// The standard deviation of the velocities at first, rad/s.
@@ -44,7 +44,8 @@ pub struct Noise<S = f64> {
     pub torque: S,
 }
 
-/// Estimates the state of a machine, and `K` of its parameters: 0 or [`PARAMETERS`](Self::PARAMETERS).
+/// Estimates the state of a machine, and `K` of its parameters: none, or
+/// [`PARAMETERS`](Self::PARAMETERS).
 ///
 /// In each `dt` of the parameters call [`measure`](Self::measure), decide, and call
 /// [`step`](Self::step).
@@ -306,7 +307,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
         let [_, (sin2, cos2)] = sines;
         let [weight1, weight2] = directions(sines).map(|(sin, _)| params.gravity * sin);
-        let [dry1, dry2] = [v1, v2].map(|v| dry_friction::<A, A::Scalar>(model, v).0);
+        let [coulomb1, coulomb2] = [v1, v2].map(|v| coulomb_friction::<A, A::Scalar>(model, v).0);
         let (square, sum) = (v1 * v1, v1 + v2);
         // Of l1 lc2 m2: what the links do to each other.
         let on_link1 = sin2 * (sum * sum - nips * square) - cos2 * (a1 + a2);
@@ -320,8 +321,8 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
             [o, -(a1 + a2)],
             [-v1, o],
             [v2, -v2],
-            [-dry1, o],
-            [dry2, -dry2],
+            [-coulomb1, o],
+            [coulomb2, -coulomb2],
             [a1 + a2, a1],
         ];
         let mass = MassMatrix::new::<A>(model, (sin2, cos2));

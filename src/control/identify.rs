@@ -18,7 +18,7 @@ const N: usize = 10;
 const FRICTION: usize = 6;
 /// Combinations whose evidence is below this part of the largest are not determined.
 const UNDETERMINED: f64 = 1e-10;
-/// The velocity below which dry friction is smooth, rad/s, as in a step that is short.
+/// The velocity below which Coulomb friction is smooth, rad/s, as in a step that is short.
 const WIDTH: f64 = 0.02;
 
 /// A sample of a recording.
@@ -202,7 +202,7 @@ fn terms(
 ) -> [([f64; N + 1], [f64; N + 1]); 2] {
     let (g1, g2) = (gravity * libm::sin(theta1), gravity * libm::sin(theta1 + theta2));
     let (sin2, cos2) = (libm::sin(theta2), libm::cos(theta2));
-    let dry = |v: f64| {
+    let coulomb = |v: f64| {
         let x = (v / WIDTH).clamp(-1.0, 1.0);
         x * (1.5 - 0.5 * x * x)
     };
@@ -211,11 +211,11 @@ fn terms(
     [
         (
             [v1, v2, o, o, o, cos2 * (2.0 * v1 + v2), o, o, o, o, o],
-            [o, o, o, g1, g2, o, v1, o, dry(v1), o, torque1],
+            [o, o, o, g1, g2, o, v1, o, coulomb(v1), o, torque1],
         ),
         (
             [o, v1, v2, o, o, cos2 * v1, o, o, o, o, o],
-            [o, o, o, o, g2, coupled, o, v2, o, dry(v2), torque2],
+            [o, o, o, o, g2, coupled, o, v2, o, coulomb(v2), torque2],
         ),
     ]
 }
