@@ -181,7 +181,8 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
     /// The standard deviations of the state, rad and rad/s. `None` before a measurement.
     #[must_use]
     pub fn deviations(&self) -> Option<[A::Scalar; 4]> {
-        self.of_state.as_ref().map(|covariances| diagonal(covariances).map(A::Scalar::sqrt))
+        let root = |x| if x > A::Scalar::ZERO { A::Scalar::sqrt(x) } else { A::Scalar::ZERO };
+        self.of_state.as_ref().map(|covariances| diagonal(covariances).map(root))
     }
 
     /// Corrects the estimate by measured angles θ1 and θ2, rad. The first ones are taken as they
@@ -225,6 +226,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
             let gain = with_angle.map(|x| x * inverse);
             add_scaled(&mut y, error, &gain);
             add_outer(&mut of_state, -one, &with_angle, &gain);
+            of_state[i][i] = with_angle[i] * of_angle * inverse; // the same, without cancellation
             let with_angle = self.parameters.map(|parameter| parameter.with_state[i]);
             let places = estimated(params.numbers_mut()).into_iter().zip(with_angle);
             for (parameter, (place, x)) in self.parameters.iter_mut().zip(places) {
@@ -236,7 +238,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
                 *place = within(*place + part * error, parameter.limits);
             }
         }
-        self.of_state = Some(of_state);
+        self.of_state = finite(of_state);
         if K > 0 {
             // Parameters that no machine has change nothing.
             let _ = self.model.set_params(params);
@@ -250,7 +252,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
     /// # Errors
     ///
     /// The torque is not finite, or a derivative overflows.
-    #[expect(clippy::indexing_slicing, reason = "i is below K")]
+    #[expect(clippy::indexing_slicing, reason = "i is below K or 4")]
     pub fn step(&mut self, torque: A::Scalar) -> Result<(), ControlError> {
         let [zero, one, half] = [A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::HALF];
         let (mut next, mut middle) = (self.model.clone(), self.model.clone());
@@ -286,10 +288,13 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         add_outer(&mut of_state, self.torque, &b, &b);
         symmetrize(&mut of_state);
         let [angle, velocity] = IN_A_STEP.map(|x| A::Scalar::from_f64(x * x));
-        add_diagonal(&mut of_state, [angle, angle, velocity, velocity]);
-        // Where one overflows, the next measurement begins again.
-        let is_finite = of_state.as_flattened().iter().all(|x| x.is_finite());
-        (self.model, self.of_state) = (next, is_finite.then_some(of_state));
+        let least = [angle, angle, velocity, velocity];
+        add_diagonal(&mut of_state, least);
+        for (i, least) in least.into_iter().enumerate() {
+            // Rounding may have made it negative.
+            of_state[i][i] = if of_state[i][i] > least { of_state[i][i] } else { least };
+        }
+        (self.model, self.of_state) = (next, finite(of_state));
         Ok(())
     }
 
@@ -334,6 +339,11 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
 #[expect(clippy::indexing_slicing, reason = "i is below 4")]
 fn add_diagonal<S: Real>(m: &mut Matrix<S>, diagonal: [S; 4]) {
     diagonal.into_iter().enumerate().for_each(|(i, x)| m[i][i] = m[i][i] + x);
+}
+
+/// Where a covariance overflows, the next measurement begins again.
+fn finite<S: Real>(covariances: Matrix<S>) -> Option<Matrix<S>> {
+    covariances.as_flattened().iter().all(|x| x.is_finite()).then_some(covariances)
 }
 
 /// x yᵀ.

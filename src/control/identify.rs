@@ -59,7 +59,7 @@ impl Evidence {
     ///
     /// # Errors
     ///
-    /// A number is not finite, `dt` is not above 0, or `half` or `window` is 0.
+    /// A number is not finite or overflows, `dt` is not above 0, or `half` or `window` is 0.
     pub fn add(
         &mut self,
         samples: &[Sample],
@@ -76,6 +76,7 @@ impl Evidence {
             check_finite("angles", &sample.angles)?;
             check_finite("torques", &sample.torques)?;
         }
+        let mut sum = self.clone();
         let parabola = half.saturating_mul(2).saturating_add(1);
         let windows = samples.windows(parabola.saturating_add(window));
         for samples in windows.step_by((window / 2).max(1)) {
@@ -94,12 +95,14 @@ impl Evidence {
                 }
             }
             for row in rows {
-                for (products, x) in self.products.iter_mut().zip(row) {
+                for (products, x) in sum.products.iter_mut().zip(row) {
                     products.iter_mut().zip(row).for_each(|(product, y)| *product += x * y);
                 }
-                self.equations += 1.0;
+                sum.equations += 1.0;
             }
         }
+        check_finite("evidence", sum.products.as_flattened())?;
+        *self = sum;
         Ok(())
     }
 
