@@ -288,11 +288,10 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         add_outer(&mut of_state, self.torque, &b, &b);
         symmetrize(&mut of_state);
         let [angle, velocity] = IN_A_STEP.map(|x| A::Scalar::from_f64(x * x));
-        let least = [angle, angle, velocity, velocity];
-        add_diagonal(&mut of_state, least);
-        for (i, least) in least.into_iter().enumerate() {
+        for (i, noise) in [angle, angle, velocity, velocity].into_iter().enumerate() {
             // Rounding may have made it negative.
-            of_state[i][i] = if of_state[i][i] > least { of_state[i][i] } else { least };
+            let own = if of_state[i][i] > zero { of_state[i][i] } else { zero };
+            of_state[i][i] = own + noise;
         }
         (self.model, self.of_state) = (next, finite(of_state));
         Ok(())
@@ -341,9 +340,9 @@ fn add_diagonal<S: Real>(m: &mut Matrix<S>, diagonal: [S; 4]) {
     diagonal.into_iter().enumerate().for_each(|(i, x)| m[i][i] = m[i][i] + x);
 }
 
-/// Where a covariance overflows, the next measurement begins again.
+/// Where a variance overflows, the next measurement begins again.
 fn finite<S: Real>(covariances: Matrix<S>) -> Option<Matrix<S>> {
-    covariances.as_flattened().iter().all(|x| x.is_finite()).then_some(covariances)
+    diagonal(&covariances).iter().all(|x| x.is_finite()).then_some(covariances)
 }
 
 /// x yᵀ.
