@@ -25,7 +25,7 @@ pub use cost::Cost;
 pub use deviation::difference;
 pub use error::ControlError;
 pub use estimator::{Estimator, Noise};
-pub use identify::{Evidence, Identified, Sample};
+pub use identify::{Evidence, Identified, Sample, identify, prediction_error};
 pub use inverse_dynamics::{Forces, inverse_dynamics, velocities};
 pub use linearize::{LinearModel, linearize};
 pub use linearize_step::linearize_step;

@@ -8,9 +8,10 @@ use core::array::from_fn;
 
 use super::error::ControlError;
 use super::matrix::check_finite;
+use crate::arithmetic::{Damped, Portable};
 use crate::error::{Error, Range};
 use crate::math::Real;
-use crate::physics::{Joints, Params};
+use crate::physics::{Joints, Params, Pendulum, State, wrap};
 
 /// The numbers that a motion tells.
 const N: usize = 10;
@@ -28,6 +29,80 @@ pub struct Sample {
     pub angles: [f64; 2],
     /// The torques on θ1 and θ2 from this sample to the next, N m. An acrobot's first is 0.
     pub torques: [f64; 2],
+}
+
+/// Identifies a machine: its parameters, and the numbers that they follow from.
+///
+/// Each recording has a sample in each `dt` of `given`, under its gravity, and tells nothing if it
+/// has less than a second. Many fits and windows are tried on the first three quarters of each
+/// recording. Those count that predict the last quarters best, 0.8 s ahead.
+///
+/// # Errors
+///
+/// Those of [`Evidence::add`] and of [`Identified::params`].
+pub fn identify(
+    recordings: &[&[Sample]],
+    given: Params,
+) -> Result<(Params, Identified), ControlError> {
+    let fit = |part: usize, half, window| {
+        let mut evidence = Evidence::NONE;
+        for samples in recordings {
+            let samples = samples.get(..samples.len() * part / 4).unwrap_or(samples);
+            evidence.add(samples, given.dt, given.gravity, half, window)?;
+        }
+        let found = evidence.solve();
+        Ok::<_, ControlError>((found.params(given)?, found))
+    };
+    let in_steps = |seconds: f64| ((seconds / given.dt).clamp(8.0, 1e6)) as usize;
+    let (mut chosen, mut least) = ((2, in_steps(0.5)), f64::INFINITY);
+    for half in [1, 2, 3, 5] {
+        for window in [0.2, 0.3, 0.5].map(in_steps) {
+            let Ok((params, _)) = fit(3, half, window) else { continue };
+            let mut error = 0.0;
+            for samples in recordings {
+                let last = samples.get(samples.len() * 3 / 4..).unwrap_or(samples);
+                error += prediction_error(params, last, in_steps(0.8))?;
+            }
+            if error < least {
+                (chosen, least) = ((half, window), error);
+            }
+        }
+    }
+    let (half, window) = chosen;
+    fit(4, half, window)
+}
+
+/// The root of the mean square of the errors of angles, rad, if they are predicted `horizon` steps
+/// ahead, from states that follow from seven angles each. 0 for a recording that is too short.
+///
+/// # Errors
+///
+/// Those of [`Pendulum::new`], and a recorded or a predicted number is not finite.
+pub fn prediction_error(
+    params: Params,
+    recording: &[Sample],
+    horizon: usize,
+) -> Result<f64, ControlError> {
+    const HALF: usize = 3;
+    const FIT: usize = 2 * HALF + 1;
+    let mut pendulum = Pendulum::<Damped<Portable>>::new(params, State::HANGING)?;
+    let (mut squares, mut count) = (0.0, 0.0);
+    let windows = recording.windows(horizon.saturating_add(FIT));
+    for samples in windows.step_by((horizon / 2).max(1)) {
+        let (Some(first), Some(last)) = (samples.get(..FIT), samples.get(horizon..)) else { break };
+        let [[theta1, theta2], [dtheta1, dtheta2]] = motion(first, params.dt);
+        pendulum.set_state(State { theta1, theta2, dtheta1, dtheta2 })?;
+        for Sample { torques: [torque1, torque2], .. } in samples.iter().skip(HALF).take(horizon) {
+            pendulum.push([torque1 * params.dt, 0.0])?;
+            pendulum.step(*torque2)?;
+        }
+        let [[measured1, measured2], _] = motion(last, params.dt);
+        let State { theta1, theta2, .. } = pendulum.state();
+        let [error1, error2] = [wrap(theta1 - measured1), wrap(theta2 - measured2)];
+        squares += error1 * error1 + error2 * error2;
+        count += 2.0;
+    }
+    Ok(if count > 0.0 { Real::sqrt(squares / count) } else { 0.0 })
 }
 
 /// What recordings tell about a machine: the normal equations of least squares, of constant size,

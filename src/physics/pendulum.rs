@@ -230,6 +230,24 @@ impl<A: Arithmetic> Pendulum<A> {
         [[upper + coupling + d2, d2], [d2, constants.link2]]
     }
 
+    /// Adds impulses to both joints, N m s: θ̇ changes by M⁻¹ times them, without a bound. A hand
+    /// that pulls for a step is the impulse of its torques times `dt` before the step.
+    ///
+    /// # Errors
+    ///
+    /// A velocity becomes infinite or NaN.
+    pub fn push(&mut self, [impulse1, impulse2]: [A::Scalar; 2]) -> Result<(), Error> {
+        let [[m11, m12], [_, m22]] = self.mass_matrix();
+        let inverse = A::Scalar::from_f64(1.0) / (m11 * m22 - m12 * m12);
+        let [theta1, theta2, dtheta1, dtheta2] = self.y;
+        self.set_state(State {
+            theta1,
+            theta2,
+            dtheta1: dtheta1 + (m22 * impulse1 - m12 * impulse2) * inverse,
+            dtheta2: dtheta2 + (m11 * impulse2 - m12 * impulse1) * inverse,
+        })
+    }
+
     /// Sine and cosine of θ1, then of θ2, which the pendulum caches.
     #[must_use]
     #[inline]
