@@ -299,7 +299,7 @@ fn terms(
 }
 
 /// Jacobi's method: a symmetric matrix becomes diagonal. Returns its eigenvectors, by rows.
-#[expect(clippy::indexing_slicing, reason = "i and j are below N")]
+#[expect(clippy::indexing_slicing, reason = "i, j and k are below N")]
 fn diagonalize(m: &mut [[f64; N]; N]) -> [[f64; N]; N] {
     let mut vectors = from_fn(|i| from_fn(|j| f64::from(u8::from(i == j))));
     for _ in 0..30 {
@@ -318,10 +318,9 @@ fn diagonalize(m: &mut [[f64; N]; N]) -> [[f64; N]; N] {
                     (row[i], row[j]) = turn(row[i], row[j]);
                 }
                 for rows in [&mut *m, &mut vectors] {
-                    let (before, after) = rows.split_at_mut(j);
-                    for (x, y) in before[i].iter_mut().zip(&mut after[0]) {
-                        (*x, *y) = turn(*x, *y);
-                    }
+                    let (one, two) = (rows[i], rows[j]);
+                    rows[i] = from_fn(|k| turn(one[k], two[k]).0);
+                    rows[j] = from_fn(|k| turn(one[k], two[k]).1);
                 }
             }
         }
