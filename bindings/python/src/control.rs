@@ -1,7 +1,9 @@
 //! What `acrobot_rs.control` computes: functions, each for many states at once, and plans.
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{self, ControlError, Cost, Knot, LinearModel, Lqr, NoPlan};
+use acrobot::control::{
+    self, ControlError, Cost, Identified, Knot, LinearModel, Lqr, NoPlan, Noise, Sample,
+};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, Portable, State};
@@ -10,7 +12,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::single::{Acrobot, One};
-use crate::{Params, rejected};
+use crate::{NAMES, Params, invalid, places, rejected};
 
 /// Applies a function to each row of inputs. Returns the results of all rows.
 #[pyfunction]
@@ -174,4 +176,79 @@ fn knot([x1, x2, x3, x4, torque, k1, k2, k3, k4]: Row) -> Knot<f32> {
 fn row(&Knot { state, torque, gain: [k1, k2, k3, k4], .. }: &Knot<f32>) -> Row {
     let [x1, x2, x3, x4] = state.into();
     [x1, x2, x3, x4, torque, k1, k2, k3, k4]
+}
+
+type Estimating = control::Estimator<Damped<Portable>>;
+
+/// Estimates a state and parameters. Those with a deviation of 0 are known.
+#[pyclass(module = "acrobot_rs._native")]
+pub struct Estimator(control::Estimator<Damped<Portable>, { Estimating::PARAMETERS }>);
+
+#[pymethods]
+impl Estimator {
+    #[new]
+    fn new(
+        acrobot: PyRef<'_, Acrobot>,
+        angle: f64,
+        torque: f64,
+        deviations: Vec<(String, f64)>,
+    ) -> PyResult<Self> {
+        let params = acrobot.acrobot.params();
+        let mut all = params;
+        all.numbers_mut().into_iter().for_each(|number| *number = 0.0);
+        for (name, deviation) in deviations {
+            places(&name).for_each(|place| *all.numbers_mut()[place] = deviation);
+        }
+        let estimator = control::Estimator::with_params(params, all, Noise { angle, torque });
+        Ok(Self(estimator.map_err(|error| invalid(error, None))?))
+    }
+
+    fn measure(&mut self, angles: [f64; 2]) -> PyResult<[f64; 4]> {
+        self.0.measure(angles).map_err(rejected)?;
+        Ok(self.0.state().into())
+    }
+
+    fn step(&mut self, torque: f64) -> PyResult<()> {
+        self.0.step(torque).map_err(rejected)
+    }
+
+    fn deviations(&self) -> Option<[f64; 4]> {
+        self.0.deviations()
+    }
+
+    fn params(&self) -> Named<f64> {
+        named_numbers(self.0.params())
+    }
+}
+
+/// Angles and torques, a row for each sample of each recording, to parameters; to the numbers that
+/// they follow from, with errors and with parts of the weakest combination; and to the number of
+/// combinations that are not determined.
+#[pyfunction]
+pub fn identify(
+    acrobot: PyRef<'_, Acrobot>,
+    recordings: Vec<Vec<[f64; 4]>>,
+) -> PyResult<(Named<f64>, Named<[f64; 3]>, usize)> {
+    let sample = |[angle1, angle2, torque1, torque2]: [f64; 4]| Sample {
+        angles: [angle1, angle2],
+        torques: [torque1, torque2],
+    };
+    let recordings: Vec<Vec<_>> =
+        recordings.into_iter().map(|rows| rows.into_iter().map(sample).collect()).collect();
+    let recordings: Vec<&[_]> = recordings.iter().map(Vec::as_slice).collect();
+    let (params, found) =
+        control::identify(&recordings, acrobot.acrobot.params()).map_err(rejected)?;
+    let Identified { values, errors, weakest, undetermined } = found;
+    let numbers = Identified::NAMES.into_iter().enumerate();
+    let numbers = numbers.map(|(i, name)| (name, [values[i], errors[i], weakest[i]])).collect();
+    Ok((named_numbers(&params), numbers, undetermined))
+}
+
+/// Names and what they stand for.
+type Named<T> = Vec<(&'static str, T)>;
+
+/// The parameters that are one number, by Python's names.
+fn named_numbers(params: &Params) -> Named<f64> {
+    let numbers = NAMES.into_iter().zip(params.numbers()).map(|(name, (_, number))| (name, number));
+    numbers.filter(|(name, _)| *name != "AVAIL_TORQUE").collect()
 }

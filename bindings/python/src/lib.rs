@@ -42,7 +42,7 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::control::{Planner, compute};
+    use super::control::{Estimator, Planner, compute, identify};
     #[pymodule_export]
     use super::single::Acrobot;
     use super::*;

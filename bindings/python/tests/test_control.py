@@ -136,3 +136,49 @@ def test_an_animation_is_in_real_time(dt, frames, tmp_path):
     values = np.float64(text.split('values="')[1].split('"')[0].split(";"))
     assert 'dur="3.000s"' in text
     assert_allclose(values - values[0], np.linspace(0, -1080, frames), atol=0.11)
+
+
+def shaken():
+    """Ten seconds of a machine with friction, its encoders and its motor."""
+    env = acrobot_rs.AcrobotSwingupEnv(dt=0.002, COULOMB_1=0.1, LINK_MASS_2=1.2)
+    torques = np.repeat(np.random.default_rng(0).uniform(-6, 6, 40), 125)
+    states = control.simulate([0.0] * 4, torques, env)[:-1]
+    count = 2 * np.pi / 4096
+    return env, states, np.round(states[:, :2] / count) * count, torques
+
+
+def test_a_recording_tells_the_machine():
+    env, _, angles, torques = shaken()
+    angles = np.unwrap(angles, axis=0)
+    wrong = acrobot_rs.AcrobotSwingupEnv(dt=0.002)
+    found = control.identify([angles], [torques], wrong)
+    assert found.undetermined == 0 and found.errors["mass22"] < 0.01
+    assert_allclose(found.values["coulomb1"], 0.1, rtol=0.1)
+    again = acrobot_rs.AcrobotSwingupEnv(**found.params)
+    at = [0.3, 1.0, 0.0, 0.0]
+    assert_allclose(control.mass_matrix(at, again), control.mass_matrix(at, env), rtol=0.01)
+    with pytest.raises(ValueError, match=r"angles must be an array of shape \(5000, 2\)"):
+        control.identify([angles[:-1]], [torques], wrong)
+
+
+def test_angles_tell_the_state_and_a_mass():
+    _, states, angles, torques = shaken()
+    model = acrobot_rs.AcrobotSwingupEnv(dt=0.002, COULOMB_1=0.1)
+    noise = {"angle_noise": 1.8 / 4096, "torque_noise": 0.05}
+    known = control.Estimator(model, **noise)
+    estimator = control.Estimator(model, **noise, deviations={"LINK_MASS_2": 0.3})
+    assert estimator.deviations is None
+    found = []
+    for measured, torque in zip(angles, torques):
+        found.append(estimator.measure(measured))
+        known.measure(measured)
+        estimator.step(torque)
+        known.step(torque)
+    assert known.params["LINK_MASS_2"] == 1.0
+    assert_allclose(estimator.params["LINK_MASS_2"], 1.2, rtol=0.01)
+    assert np.sqrt(np.mean(np.square((found - states)[2500:, 2:]))) < 0.1
+    assert (estimator.deviations[2:] < 0.1).all()
+    with pytest.raises(ValueError, match="LINK_MASS_2 must be finite and at least 0"):
+        control.Estimator(model, **noise, deviations={"LINK_MASS_2": -1.0})
+    with pytest.raises(ValueError, match="deviations must be of COULOMB_1, .*, got \\['dt'\\]"):
+        control.Estimator(model, **noise, deviations={"dt": 0.1})

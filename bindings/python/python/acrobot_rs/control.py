@@ -1,4 +1,4 @@
-"""Energy, linear models, regulators, simulations and plans of the acrobot.
+"""Energy, linear models, regulators, simulations, plans and estimates of the acrobot.
 
 A state is the last axis: theta1, theta2 (rad) and their velocities (rad/s). Arrays broadcast in the
 axes before it. ``env`` is a single environment of this package, whose parameters count, or ``None``
@@ -8,7 +8,7 @@ for Gymnasium's.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -184,6 +184,88 @@ def _four(state: ArrayLike) -> list[float]:
     return numbers("state", "four numbers", state, (4,)).tolist()
 
 
+class Estimator:
+    """Estimates the state of a machine from its angles alone: an extended Kalman filter.
+
+    The model has the parameters of ``env``. ``angle_noise``, rad, and ``torque_noise``, N m, are
+    standard deviations; an encoder of n counts a turn has 1.8 / n. Parameters that are named in
+    ``deviations``, with their standard deviations, are estimated too: masses, the length and the
+    moment of inertia of link 1, the latter of link 2, frictions and ``ROTOR``.
+
+    In each ``dt`` call :meth:`measure`, decide, and call :meth:`step`.
+    """
+
+    def __init__(
+        self,
+        env: Env = None,
+        *,
+        angle_noise: float,
+        torque_noise: float,
+        deviations: Mapping[str, float] | None = None,
+    ) -> None:
+        named = dict(deviations or {})
+        if unknown := named.keys() - _ESTIMATED:
+            raise must_be("deviations", f"of {', '.join(sorted(_ESTIMATED))}", sorted(unknown))
+        native = _acrobot(env)._native
+        self._native = _native.Estimator(native, angle_noise, torque_noise, list(named.items()))
+
+    def measure(self, angles: ArrayLike) -> Floats:
+        """Correct the estimate by theta1 and theta2, rad. Return the state."""
+        measured = numbers("angles", "two numbers", angles, (2,)).tolist()
+        return np.array(self._native.measure(measured))
+
+    def step(self, torque: float) -> None:
+        """Predict the state after one ``dt`` under a torque, N m."""
+        self._native.step(torque)
+
+    @property
+    def deviations(self) -> Floats | None:
+        """The standard deviations of the state. ``None`` before a measurement."""
+        found = self._native.deviations()
+        return None if found is None else np.array(found)
+
+    @property
+    def params(self) -> dict[str, float]:
+        """The parameters, estimated and known, as arguments of an environment."""
+        return dict(self._native.params())
+
+
+@dataclass(frozen=True)
+class Identified:
+    """What :func:`identify` finds.
+
+    ``values`` and their standard ``errors`` are ten numbers that a motion tells, by name:
+    ``Identified::NAMES`` in Rust has them. ``undetermined`` combinations of them are not told, and
+    ``weakest`` has the parts of the one that is told worst.
+    """
+
+    params: dict[str, float]  #: arguments of an environment
+    values: dict[str, float]
+    errors: dict[str, float]
+    weakest: dict[str, float]
+    undetermined: int
+
+
+def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env) -> Identified:
+    """Identify a machine from recordings, each of a second or more.
+
+    A recording has angles, ``(n, 2)``, rad, without jumps by whole turns, and the motor's torques,
+    ``(n,)``, N m, or those of both joints, ``(n, 2)``, each until the next sample. ``env`` has
+    ``dt``, gravity and the centres of mass.
+    """
+    recordings = []
+    for angle, torque in zip(angles, torques, strict=True):
+        columns = np.asarray(torque, np.float64)
+        if columns.ndim == 1:
+            columns = np.column_stack([np.zeros_like(columns), columns])
+        rule = f"an array of shape {columns.shape}, as the torques have"
+        angle = numbers("angles", rule, angle, columns.shape)
+        recordings.append(np.column_stack([angle, columns]).tolist())
+    params, found, undetermined = _native.identify(_acrobot(env)._native, recordings)
+    values, errors, weakest = ({name: row[i] for name, row in found} for i in range(3))
+    return Identified(dict(params), values, errors, weakest, undetermined)
+
+
 class Animation:
     """An animated SVG of states, ``(n, 4)``, one each ``dt``, in real time. Notebooks show it."""
 
@@ -214,6 +296,9 @@ class Animation:
 
 
 _GYMNASIUM = AcrobotEnv()
+_ESTIMATED = {"LINK_LENGTH_1", "ROTOR"} | {
+    f"{name}_{link}" for name in ("LINK_MASS", "LINK_MOI", "FRICTION", "COULOMB") for link in (1, 2)
+}
 #: The last axes of inputs. Others have 4, and ``torques`` any number.
 _AXES = {"torque": (), "accelerations": (2,), "A": (4, 4), "B": (4, 1), "Q": (4, 4), "R": (1, 1)}
 

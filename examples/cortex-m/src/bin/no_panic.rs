@@ -14,7 +14,7 @@ use core::panic::PanicInfo;
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::control::{
-    Cost, Estimator, Evidence, Knot, Noise, Planner, Sample, difference, inverse_dynamics,
+    self, Cost, Estimator, Evidence, Knot, Noise, Planner, Sample, difference, inverse_dynamics,
     linearize, linearize_step, lqr, regulator, velocities,
 };
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
@@ -98,6 +98,7 @@ fn pendulum<A: Arithmetic>() {
             pendulum.step(number()),
             pendulum.set_params(params()).map_err(|error| error.message()),
             pendulum.set_state(state()),
+            pendulum.push([number(), number()]),
         ));
         black_box((
             pendulum.state(),
@@ -276,6 +277,9 @@ fn identify() {
     let (half, window) = (black_box(1), black_box(2));
     let _ = black_box(evidence.add(black_box(&samples), number(), number(), half, window));
     let _ = black_box(evidence.solve().params(params()));
+    let found = control::identify(&[black_box(&samples)], params());
+    let horizon = black_box(3);
+    let _ = black_box((found, control::prediction_error(params(), &samples, horizon)));
 }
 
 /// A policy from a file that is read at run time.
