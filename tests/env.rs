@@ -1,9 +1,11 @@
 //! Environments: Gymnasium's runs, wrappers and spaces.
 
+use std::f32::consts::PI;
+
 use acrobot::arithmetic::{Damped, Host};
 use acrobot::env::{BoxSpace, Env};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::task::{GymnasiumV0, ResetBounds, Swingup};
+use acrobot::task::{Balance, GymnasiumV0, ResetBounds, Swingup};
 use acrobot::{Acrobot, Action, Fast, Params, ResetOptions, TimeLimit};
 use common::{Digest, is_recorded_library, lines};
 
@@ -70,6 +72,9 @@ fn spaces_are_gymnasiums_and_know_their_elements() {
     let high = [1.0, 1.0, 1.0, 1.0, 12.566_371, 28.274_334];
     assert_eq!(space.high(), high);
     assert_eq!(space.low(), high.map(|x| -x));
+    assert_eq!(Acrobot::<Fast, Balance>::new(0).observation_space(), space);
+    let angles = Acrobot::<Fast, GymnasiumV0>::new(0).observation_space();
+    assert_eq!(angles.high(), [PI, PI, high[4], high[5]]);
     assert!(space.contains(space.low()) && space.contains(space.high()));
     for number in [high[5].next_up(), -high[5].next_up(), f32::NAN] {
         let mut outside = high;
