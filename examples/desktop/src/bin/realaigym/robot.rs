@@ -8,12 +8,11 @@ use acrobot::{Params, Portable, State};
 
 use crate::task::LIMIT;
 
-/// A state with its sines and cosines, and the torques of the joints in the next step.
+/// A state, and the torques of both joints in the step from there.
 #[derive(Clone, Copy)]
 pub struct Row {
     pub time: f64,
     pub state: [f64; 4],
-    pub sin_cos: [(f64, f64); 2],
     pub torques: [f64; 2],
 }
 
@@ -33,9 +32,8 @@ impl Robot {
     /// A Runge-Kutta step.
     pub fn step(&mut self, torques: [f64; 2]) -> anyhow::Result<()> {
         let torques = torques.map(|torque| saturate(torque, LIMIT));
-        let (state, sin_cos) = (self.pendulum.state().into(), self.pendulum.sin_cos());
-        self.rows.push(Row { time: self.time, state, sin_cos, torques });
-        let dt = self.pendulum.params().dt;
+        let (state, dt) = (self.pendulum.state().into(), self.pendulum.params().dt);
+        self.rows.push(Row { time: self.time, state, torques });
         let (mut next, mut rates) = (state, [0.0; 4]);
         for (ahead, weight) in [(0.0, 6.0), (0.5, 3.0), (0.5, 3.0), (1.0, 6.0)] {
             self.pendulum.set_state(from_fn(|i| state[i] + ahead * dt * rates[i]).into())?;
@@ -46,16 +44,15 @@ impl Robot {
             rates[3] -= m12 * scaled;
             next = from_fn(|i| next[i] + dt / weight * rates[i]);
         }
-        self.pendulum.set_state(next.into())?;
         self.time += dt;
-        Ok(())
+        Ok(self.pendulum.set_state(next.into())?)
     }
 
     /// Writes what RealAIGym's scorer reads.
     pub fn save(&self, path: &Path) -> anyhow::Result<()> {
         let mut text =
             "time,pos_meas1,pos_meas2,vel_meas1,vel_meas2,tau_con1,tau_con2\n".to_owned();
-        for Row { time, state: [a, b, c, d], torques: [e, f], .. } in &self.rows {
+        for Row { time, state: [a, b, c, d], torques: [e, f] } in &self.rows {
             text += &format!("{time},{a},{b},{c},{d},{e},{f}\n");
         }
         desktop::write(path, text)
