@@ -14,6 +14,26 @@ use crate::task::RealAiGym;
 /// squared velocities.
 pub type Costs = [f64; 7];
 
+/// Of the best published trajectories of version 2 and 1.
+pub const HISTORY_SAC: Costs = [
+    1.0000000000000007,
+    8.077749161960673,
+    1.9757194519042969,
+    2.067291440963739,
+    1.8037118196867141,
+    0.009546752841345449,
+    88.4965605525382,
+];
+pub const MC_PILCO: Costs = [
+    1.0980000000000008,
+    9.808203401899997,
+    2.8199985516469153,
+    1.2688701255573542,
+    2.268946930905162,
+    0.0566728078006337,
+    242.4359914232601,
+];
+
 /// Of the score of a swing-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Version {
@@ -65,4 +85,35 @@ pub fn costs(params: Params, rows: &[Row]) -> anyhow::Result<(Costs, f64)> {
         costs[5] += mean(&mut changes.map(|x| (x - middle).powi(2))).sqrt();
     }
     Ok((costs, uptime))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::array::from_fn;
+
+    use super::*;
+    use crate::task::C1;
+
+    /// Of `tests/data/by_hand/realaigym_scores.py`, which has the same trajectory.
+    #[test]
+    fn costs_and_scores_are_realaigyms() {
+        let row = |i: usize| {
+            let [x, y, z, a, b, c] =
+                [i * 7 % 13, i * 5 % 7, i * 11 % 9, i * 3 % 8, i % 3, i * 5 % 11].map(|n| n as f64);
+            let theta1 = if i < 24 { x / 4.0 } else { 3.125 };
+            let state = [theta1, (y - 3.0) / 16.0, z - 4.0, a - 3.5];
+            Row { time: i as f64 / 4.0, state, torques: [b / 8.0, (c - 5.0) / 4.0] }
+        };
+        let (found, uptime) = costs(C1, &from_fn::<_, 41, _>(row)).unwrap();
+        let theirs = [6.0, 9.9375, 1.25, 8.09375, 6.66015625, 1.5437482947265575, 118.5, 5.0];
+        for (x, y) in found.into_iter().chain([uptime]).zip(theirs) {
+            assert!((x - y).abs() < 1e-12, "{found:?} {uptime}");
+        }
+        for (version, costs, score) in [
+            (Version::V2, HISTORY_SAC, 0.6552699844147534),
+            (Version::V1, MC_PILCO, 0.8690550290770307),
+        ] {
+            assert!((version.score(costs) - score).abs() < 1e-14, "{version:?}");
+        }
+    }
 }
