@@ -9,31 +9,24 @@ use acrobot::{Params, Portable, State};
 use crate::task::LIMIT;
 
 /// A state, and the torques of both joints in the step from there.
-#[derive(Clone, Copy)]
-pub struct Row {
-    pub time: f64,
-    pub state: [f64; 4],
-    pub torques: [f64; 2],
-}
+pub type Row = ([f64; 4], [f64; 2]);
 
 #[derive(Clone)]
 pub struct Robot {
     pub pendulum: Pendulum<Portable>,
-    pub time: f64,
     pub rows: Vec<Row>,
 }
 
 impl Robot {
     pub fn hanging(params: Params) -> anyhow::Result<Self> {
-        let pendulum = Pendulum::new(params, State::HANGING)?;
-        Ok(Self { pendulum, time: 0.0, rows: Vec::new() })
+        Ok(Self { pendulum: Pendulum::new(params, State::HANGING)?, rows: Vec::new() })
     }
 
     /// A Runge-Kutta step.
     pub fn step(&mut self, torques: [f64; 2]) -> anyhow::Result<()> {
         let torques = torques.map(|torque| saturate(torque, LIMIT));
         let (state, dt) = (self.pendulum.state().into(), self.pendulum.params().dt);
-        self.rows.push(Row { time: self.time, state, torques });
+        self.rows.push((state, torques));
         let (mut next, mut rates) = (state, [0.0; 4]);
         for (ahead, weight) in [(0.0, 6.0), (0.5, 3.0), (0.5, 3.0), (1.0, 6.0)] {
             self.pendulum.set_state(from_fn(|i| state[i] + ahead * dt * rates[i]).into())?;
@@ -44,15 +37,15 @@ impl Robot {
             rates[3] -= m12 * scaled;
             next = from_fn(|i| next[i] + dt / weight * rates[i]);
         }
-        self.time += dt;
         Ok(self.pendulum.set_state(next.into())?)
     }
 
     /// Writes what RealAIGym's scorer reads.
     pub fn save(&self, path: &Path) -> anyhow::Result<()> {
         let mut text =
-            "time,pos_meas1,pos_meas2,vel_meas1,vel_meas2,tau_con1,tau_con2\n".to_owned();
-        for Row { time, state: [a, b, c, d], torques: [e, f] } in &self.rows {
+            String::from("time,pos_meas1,pos_meas2,vel_meas1,vel_meas2,tau_con1,tau_con2\n");
+        for (i, ([a, b, c, d], [e, f])) in self.rows.iter().enumerate() {
+            let time = i as f64 * self.pendulum.params().dt;
             text += &format!("{time},{a},{b},{c},{d},{e},{f}\n");
         }
         desktop::write(path, text)

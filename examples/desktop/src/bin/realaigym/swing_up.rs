@@ -1,4 +1,4 @@
-//! The boards of performance: a swing-up from hanging, 10 s long.
+//! The boards of performance: a swing-up from hanging in 10 s.
 //!
 //! A planner minimizes a sum, and a score is none. So the weights of each plan are the slopes of
 //! the score at the plan before.
@@ -11,57 +11,51 @@ use anyhow::Context;
 
 use crate::robot::Robot;
 use crate::score::{Costs, Version, costs};
-use crate::task::LIMIT;
+use crate::task::{HISTORY_SAC, LIMIT};
 
-const SECONDS: f64 = 10.0;
+const STEPS: usize = 5000;
 const ITERATIONS: u32 = 60;
-/// Costs of a good swing-up, for the first plans.
-const GOOD: Costs = [1.0, 8.0, 2.0, 1.0, 1.8, 0.01, 90.0];
 
-/// A score with its costs.
-type Played = (f64, Costs, Robot);
-
-/// The best swing-up of so many guesses.
-pub fn search(version: Version, params: Params, tries: u32) -> anyhow::Result<Played> {
+/// The best swing-up of so many guesses, and its costs.
+pub fn search(version: Version, params: Params, tries: u32) -> anyhow::Result<(Costs, Robot)> {
+    let score = |played: &(Costs, Robot)| version.score(played.0);
     let planner = |limit, costs| Planner::with_cost(params, limit, weigh(version, &params, costs));
-    let play = |planner: &Planner<Portable>, plan: &[Knot<f64>]| -> anyhow::Result<Played> {
+    let play = |planner: &Planner<Portable>, plan: &[Knot<f64>]| -> anyhow::Result<_> {
         let mut robot = Robot::hanging(params)?;
-        while robot.time < SECONDS {
-            robot.step([0.0, planner.follow(plan, robot.rows.len(), robot.pendulum.state())])?;
+        for step in 0..STEPS {
+            robot.step([0.0, planner.follow(plan, step, robot.pendulum.state())])?;
         }
-        let (costs, _) = costs(params, &robot.rows)?;
-        Ok((version.score(costs), costs, robot))
+        Ok((costs(params, &robot.rows)?, robot))
     };
-    let (mut first, mut found) = (planner(LIMIT, GOOD)?, Vec::new());
+    let (mut first, mut found) = (planner(LIMIT, HISTORY_SAC)?, Vec::new());
     for (_, plan) in plans(&mut first, State::HANGING, &mut Pcg64::new(1), 300.0, tries)? {
         found.push(play(&first, &plan)?);
     }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found.sort_by(|a, b| score(b).total_cmp(&score(a)));
     found.truncate(16);
     for best in &mut found {
         // The plan goes on for 1.5 s upright.
-        let rows = best.2.rows.iter().take(((best.1[0] + 1.5) / params.dt) as usize);
-        let mut plan: Vec<_> = rows.map(|row| Knot::open(row.torques[1])).collect();
+        let rows = best.1.rows.iter().take(((best.0[0] + 1.5) / params.dt) as usize);
+        let mut plan: Vec<_> = rows.map(|(_, torques)| Knot::open(torques[1])).collect();
         // Version 1 counts the largest torque, so each plan has less, until that is too little.
         let (mut limit, mut less) = (LIMIT, 0.95);
-        while best.0 > 0.0 && less < 0.999 {
-            let (mut planner, mut other) = (planner(limit, best.1)?, plan.clone());
+        while score(best) > 0.0 && less < 0.999 {
+            let (mut planner, mut other) = (planner(limit, best.0)?, plan.clone());
             planner.improve(State::HANGING, ITERATIONS, &mut other)?;
             let played = play(&planner, &other)?;
-            if played.0 > best.0 + 1e-5 {
+            if score(&played) > score(best) + 1e-5 {
                 (*best, plan) = (played, other);
             } else {
                 less = f64::sqrt(less);
             }
             if version == Version::V1 {
-                limit = less * best.1[2];
+                limit = less * best.0[2];
             }
         }
     }
-    found.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).context("no tries")
+    found.into_iter().max_by(|a, b| score(a).total_cmp(&score(b))).context("no tries")
 }
 
-/// The slopes of a score.
 fn weigh(version: Version, params: &Params, costs: Costs) -> Cost {
     let slope = |i: usize| {
         let (mut more, part) = (costs, 1e-4 * costs[i]);
@@ -69,12 +63,12 @@ fn weigh(version: Version, params: &Params, costs: Costs) -> Cost {
         (version.score(costs) - version.score(more)) / part
     };
     // The standard deviation is the root of a mean square.
-    let steps = SECONDS / params.dt;
+    let square = 2.0 * STEPS as f64 * costs[5].max(0.002);
     Cost {
         angles: [1e-3; 2],
         velocities: [slope(6); 2],
         torque: slope(4),
-        torque_change: slope(5) / (2.0 * steps * costs[5].max(0.002)),
+        torque_change: slope(5) / square,
         power: slope(1),
         below: slope(0),
         height: 0.9 * (params.length1 + params.length2),
@@ -83,7 +77,7 @@ fn weigh(version: Version, params: &Params, costs: Costs) -> Cost {
     }
 }
 
-/// Improves random guesses, one to three times as long as so many steps. Returns plans and costs.
+/// Improves random guesses, one to three times as long as so many steps. Returns costs and plans.
 pub fn plans<A: Arithmetic>(
     planner: &mut Planner<A>,
     start: State<A::Scalar>,

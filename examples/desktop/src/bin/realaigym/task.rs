@@ -7,6 +7,8 @@ use acrobot::rand_core::Rng;
 use acrobot::task::{ResetBounds, Seen, Swingup, Task};
 use acrobot::{Params, State};
 
+use crate::score::Costs;
+
 /// The largest torque, N m.
 pub const LIMIT: f64 = 6.0;
 
@@ -38,6 +40,10 @@ pub fn c0() -> Params {
     let params = Params { mass1, mass2, center_of_mass2: 0.3212669909674605, ..C1 };
     params.with_inertias_about_joints([0.02671076499939512, 0.053878129629650884])
 }
+
+/// The costs of the best published swing-ups of versions 2 and 1.
+pub const HISTORY_SAC: Costs = [1.0, 8.0777, 1.9757, 2.0673, 1.80371, 0.0095468, 88.4966, 9.0];
+pub const MC_PILCO: Costs = [1.098, 9.8082, 2.82, 1.2689, 2.26895, 0.056673, 242.436, 8.904];
 
 /// Swing up and keep the tip above the line, at 0.9 of the acrobot's length.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use std::array::from_fn;
 use std::time::{Duration, Instant};
 
-use acrobot::control::{Cost, Planner, difference, inverse_dynamics};
+use acrobot::control::{Cost, Knot, Planner, difference, inverse_dynamics};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::saturate;
 use acrobot::task::Task;
@@ -13,18 +13,17 @@ use crate::robot::Robot;
 use crate::swing_up::plans;
 use crate::task::{C1, LIMIT, RealAiGym};
 
-pub const SECONDS: f64 = 60.0;
-const RESETS: u32 = 15;
-/// Steps between two decisions, and for planning: 0.1 s.
-const EVERY: u32 = 5;
-const PLANNING: u32 = 50;
-/// Tries side by side.
-const SIDE: u32 = 32;
+/// Of the episode, of a reset, of planning, and from one decision to the next.
+const STEPS: usize = 30_000;
+const RESET: usize = 101;
+const PLANNING: usize = 50;
+const EVERY: usize = 5;
+const RESETS: usize = 15;
 
 /// Plays with the resets of a seed. Each plan has so many tries, or as many as a time allows.
 /// Returns the longest time of a plan, too.
 pub fn play(seed: u64, tries: u32, time: Option<Duration>) -> anyhow::Result<(Robot, Duration)> {
-    let params: Params<f32> = Params { dt: f64::from(EVERY) * C1.dt, ..C1 }.cast();
+    let params: Params<f32> = Params { dt: EVERY as f64 * C1.dt, ..C1 }.cast();
     let cost = Cost {
         velocities: [1e-3; 2],
         torque: 2e-3,
@@ -39,57 +38,45 @@ pub fn play(seed: u64, tries: u32, time: Option<Duration>) -> anyhow::Result<(Ro
     let (mut robot, mut rng) = (Robot::hanging(C1)?, Pcg64::new(seed));
     let (mut longest, mut sums, mut before) = (Duration::ZERO, [0.0; 2], None);
     for i in 1..=RESETS + 1 {
-        let shift = if i > RESETS { 0.0 } else { uniform(&mut rng, -1.0, 1.0) };
-        let end = SECONDS / f64::from(RESETS + 1) * f64::from(i) + shift;
-        while robot.time < end {
+        let shift = if i > RESETS { 0.0 } else { uniform(&mut rng, -1.0, 1.0) / C1.dt };
+        let end = STEPS * i / (RESETS + 1);
+        let end = (end as f64 + shift).ceil() as usize;
+        while robot.rows.len() < end {
             // The elbow brakes while the planner plans from the state afterwards.
-            let brake = |state: State<f64>| -0.1 * state.dtheta2;
+            let brake = |robot: &Robot| -0.1 * robot.pendulum.state().dtheta2;
             let mut ahead = robot.clone();
             for _ in 0..PLANNING {
-                ahead.step([0.0, brake(ahead.pendulum.state())])?;
+                ahead.step([0.0, brake(&ahead)])?;
             }
-            let start = ahead.pendulum.state().cast();
-            let (began, mut tried, mut best) = (Instant::now(), 0, (f64::INFINITY, Vec::new()));
-            while match time {
-                Some(time) => began.elapsed() * (tried + SIDE) < time * tried.max(1),
-                None => tried < tries,
-            } {
-                tried += SIDE;
-                for plan in plans(&mut planner, start, &mut rng, 60.0, SIDE)? {
-                    let end = plan.1.last().map(|knot| knot.state);
-                    if plan.0 < best.0 && end.is_some_and(|end| planner.catches(end)) {
-                        best = plan;
-                    }
-                }
-            }
+            let began = Instant::now();
+            let state = ahead.pendulum.state().cast();
+            let plan = search(&mut planner, state, &mut rng, tries, time)?;
             longest = longest.max(began.elapsed());
             let mut torque = 0.0;
             for step in 0.. {
-                let (state, knot) = (robot.pendulum.state(), step / EVERY);
+                let state = robot.pendulum.state();
                 let [theta1, _, dtheta1, _] = difference(state, State::UPRIGHT);
-                let has_fallen = knot > 200 && (theta1.abs() > 0.5 || dtheta1.abs() > 8.0);
-                if robot.time >= end || has_fallen {
+                let has_fallen = step > 1000 && (theta1.abs() > 0.5 || dtheta1.abs() > 8.0);
+                if robot.rows.len() >= end || has_fallen {
                     break;
                 }
                 if step < PLANNING {
-                    torque = brake(state);
+                    torque = brake(&robot);
                 } else if step % EVERY == 0 {
-                    let knot = (step - PLANNING) / EVERY;
-                    torque = planner.follow(&best.1, knot as usize, state.cast()).into();
+                    torque = planner.follow(&plan, (step - PLANNING) / EVERY, state.cast()).into();
                 }
                 robot.step([0.0, torque])?;
             }
         }
         // The reset: a controller of both joints' positions, which compensates for gravity.
         let goal = RealAiGym.draw(RealAiGym::RESET_BOUNDS, &mut rng).cast::<f64>();
-        while i <= RESETS && robot.time - end <= 0.2 {
+        while i <= RESETS && robot.rows.len() < end + RESET {
             let state = robot.pendulum.state();
+            let mut resting = robot.pendulum.clone();
+            resting.set_state(State { dtheta1: 0.0, dtheta2: 0.0, ..state })?;
+            let weights = inverse_dynamics(&resting, [0.0; 2])?.torques;
             let errors = [goal.theta1 - state.theta1, goal.theta2 - state.theta2];
             let last = before.replace(errors).unwrap_or(errors);
-            let at_rest = State { dtheta1: 0.0, dtheta2: 0.0, ..state };
-            let mut pendulum = robot.pendulum.clone();
-            pendulum.set_state(at_rest)?;
-            let weights = inverse_dynamics(&pendulum, [0.0; 2])?.torques;
             robot.step(from_fn(|j| {
                 sums[j] += errors[j];
                 // RealAIGym's gains are for steps of 0.001 s.
@@ -100,4 +87,29 @@ pub fn play(seed: u64, tries: u32, time: Option<Duration>) -> anyhow::Result<(Ro
         }
     }
     Ok((robot, longest))
+}
+
+/// The cheapest plan that ends upright; empty without any.
+fn search(
+    planner: &mut Planner<Fast>,
+    start: State<f32>,
+    rng: &mut Pcg64,
+    tries: u32,
+    time: Option<Duration>,
+) -> anyhow::Result<Vec<Knot<f32>>> {
+    const SIDE: u32 = 32;
+    let (began, mut tried, mut best) = (Instant::now(), 0, (f64::INFINITY, Vec::new()));
+    while match time {
+        Some(time) => began.elapsed() * (tried + SIDE) < time * tried.max(1),
+        None => tried < tries,
+    } {
+        tried += SIDE;
+        for plan in plans(planner, start, rng, 60.0, SIDE)? {
+            let end = plan.1.last().map(|knot| knot.state);
+            if plan.0 < best.0 && end.is_some_and(|end| planner.catches(end)) {
+                best = plan;
+            }
+        }
+    }
+    Ok(best.1)
 }
