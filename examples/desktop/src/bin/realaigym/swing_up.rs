@@ -16,6 +16,9 @@ use crate::task::{HISTORY_SAC, LIMIT};
 const STEPS: usize = 5000;
 const ITERATIONS: u32 = 60;
 
+/// Its cost comes first.
+type Plan<S> = (f64, Vec<Knot<S>>);
+
 /// The best swing-up of so many guesses, and its costs.
 pub fn search(version: Version, params: Params, tries: u32) -> anyhow::Result<(Costs, Robot)> {
     let score = |played: &(Costs, Robot)| version.score(played.0);
@@ -77,14 +80,14 @@ fn weigh(version: Version, params: &Params, costs: Costs) -> Cost {
     }
 }
 
-/// Improves random guesses, one to three times as long as so many steps. Returns costs and plans.
+/// Improves random guesses, one to three times as long as so many steps.
 pub fn plans<A: Arithmetic>(
     planner: &mut Planner<A>,
     start: State<A::Scalar>,
     rng: &mut Pcg64,
     steps: f64,
     tries: u32,
-) -> anyhow::Result<Vec<(f64, Vec<Knot<A::Scalar>>)>> {
+) -> anyhow::Result<Vec<Plan<A::Scalar>>> {
     let mut plans = Vec::new();
     for _ in 0..tries {
         let mut plan = vec![Knot::EMPTY; uniform(rng, steps, 3.0 * steps) as usize];
