@@ -24,7 +24,7 @@ const FIRST: u64 = 100;
 #[derive(Parser)]
 struct Options {
     /// Tries of each plan.
-    #[arg(long, default_value_t = 160, value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 128, value_parser = value_parser!(u32).range(1..))]
     tries: u32,
     /// After resets as many tries as fit into this time instead.
     #[arg(long, value_name = "MS")]
