@@ -84,6 +84,8 @@ CONTROL = {
     "torque": "`difference` and `Lqr::torque`",
     "inverse_dynamics": "`inverse_dynamics`",
     "velocities": "`velocities`",
+    "estimator": "`Estimator` with friction, a measurement and a step",
+    "estimator_params": "the same with 10 parameters",
 }
 ADDITIONS = {
     "message": "flash of `set_params`, and `message` of its error",
