@@ -49,6 +49,7 @@ pages! {
     benchmarks "benchmarks.md",
     learning "learning.md",
     swingup "swingup.md",
+    realaigym "realaigym.md",
     optimum "optimum.md",
 }
 

@@ -77,6 +77,7 @@ fn bad_arguments_are_rejected_with_a_reason() {
         ("episode --seed 4x2", "got 'x' as character 2"),
         ("episode --out no/a.svg", "Error: cannot write no/a.svg"),
         ("stay_up --episodes 0", "0 is not in 1.."),
+        ("realaigym --tries 0", "0 is not in 1.."),
         ("trace 013", "an action must be 0, 1 or 2"),
         ("swing_up --load /dev/zero", "weights must"),
         ("swing_up --steps 1 --episodes 1", "cannot be used with"),

@@ -1,0 +1,75 @@
+//! Plays RealAIGym's simulated boards of the acrobot.
+//!
+//! ```text
+//! cargo run --release -p desktop --bin realaigym
+//! ```
+
+mod robot;
+mod score;
+mod swing_up;
+mod task;
+mod uptime;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Parser, value_parser};
+use score::{Costs, Version, costs};
+use task::{HISTORY_SAC, MC_PILCO};
+
+/// The first seed of the resets. The settings were chosen with 1 to 11.
+const FIRST: u64 = 100;
+
+/// Plays RealAIGym's simulated boards of the acrobot by planning.
+#[derive(Parser)]
+struct Options {
+    /// Tries of each plan.
+    #[arg(long, default_value_t = 128, value_parser = value_parser!(u32).range(1..))]
+    tries: u32,
+    /// After resets as many tries as fit into this time instead.
+    #[arg(long, value_name = "MS")]
+    time: Option<u64>,
+    /// Episodes of ICRA 2025.
+    #[arg(long, default_value_t = 11, value_parser = value_parser!(u64).range(1..))]
+    episodes: u64,
+    /// A folder for the trajectories.
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+}
+
+fn main() -> anyhow::Result<()> {
+    let Options { tries, time, episodes, out } = Options::parse();
+    let save = |name: String, robot: &robot::Robot| match &out {
+        Some(folder) => robot.save(&folder.join(name)),
+        None => Ok(()),
+    };
+    println!(
+        "| | score | s | J | largest N m | N m s | N² m² s | smoothness, N m | rad²/s | up, s |"
+    );
+    println!("|{}", "---|".repeat(10));
+    let print = |name: &str, version: Version, costs: Costs| {
+        let numbers = costs.map(|cost| format!(" | {cost:.4}")).concat();
+        println!("| {version:?}: {name} | {:.4}{numbers} |", version.score(costs));
+    };
+    for (version, params, name, published) in [
+        (Version::V2, task::C1, "History SAC", HISTORY_SAC),
+        (Version::V1, task::c0(), "MC-PILCO", MC_PILCO),
+    ] {
+        let (costs, robot) = swing_up::search(version, params, tries)?;
+        print("Planner", version, costs);
+        print(name, version, published);
+        save(format!("{version:?}.csv"), &robot)?;
+    }
+    let (mut sum, mut longest) = (0.0, Duration::ZERO);
+    for seed in FIRST..FIRST + episodes {
+        let (robot, took) = uptime::play(seed, tries, time.map(Duration::from_millis))?;
+        let costs = costs(task::C1, &robot.rows)?;
+        print(&format!("Planner, seed {seed}"), Version::V3, costs);
+        (sum, longest) = (sum + Version::V3.score(costs), longest.max(took));
+        save(format!("V3_{seed}.csv"), &robot)?;
+    }
+    println!("\nV3: mean {:.4} (AR-EAPO: 0.6581)", sum / episodes as f64);
+    println!("A plan of V3 took at most {:.3} s.", longest.as_secs_f64());
+    println!("Published: real_ai_gym_leaderboard, data/acrobot, 26 September 2025");
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! The board of ICRA 2025: 60 s with resets at random, of which the time above the line counts.
+
+use std::array::from_fn;
+use std::time::{Duration, Instant};
+
+use acrobot::control::{Cost, Knot, Planner, difference, inverse_dynamics};
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::physics::saturate;
+use acrobot::task::Task;
+use acrobot::{Fast, Params, State};
+
+use crate::robot::Robot;
+use crate::swing_up::plans;
+use crate::task::{C1, LIMIT, RealAiGym};
+
+/// Of the episode, of a reset, of planning, and from one decision to the next.
+const STEPS: usize = 30_000;
+const RESET: usize = 101;
+const PLANNING: usize = 50;
+const EVERY: usize = 5;
+const RESETS: usize = 15;
+
+/// Plays with the resets of a seed. Each plan has so many tries, or as many as a time allows.
+/// Returns the longest time of a plan, too.
+pub fn play(seed: u64, tries: u32, time: Option<Duration>) -> anyhow::Result<(Robot, Duration)> {
+    let params: Params<f32> = Params { dt: EVERY as f64 * C1.dt, ..C1 }.cast();
+    let cost = Cost {
+        velocities: [1e-3; 2],
+        torque: 2e-3,
+        torque_change: 2e-5,
+        below: 1.0,
+        height: 0.45,
+        margin: 0.015,
+        arrival: 1.0,
+        ..Cost::new(&params)
+    };
+    let mut planner = Planner::<Fast>::with_cost(params, LIMIT as f32, cost)?;
+    let (mut robot, mut rng) = (Robot::hanging(C1)?, Pcg64::new(seed));
+    let (mut longest, mut sums, mut before) = (Duration::ZERO, [0.0; 2], None);
+    for i in 1..=RESETS + 1 {
+        let shift = if i > RESETS { 0.0 } else { uniform(&mut rng, -1.0, 1.0) / C1.dt };
+        let end = STEPS * i / (RESETS + 1);
+        let end = (end as f64 + shift).ceil() as usize;
+        while robot.rows.len() < end {
+            // The elbow brakes while the planner plans from the state afterwards.
+            let brake = |robot: &Robot| -0.1 * robot.pendulum.state().dtheta2;
+            let mut ahead = robot.clone();
+            for _ in 0..PLANNING {
+                ahead.step([0.0, brake(&ahead)])?;
+            }
+            let began = Instant::now();
+            let state = ahead.pendulum.state().cast();
+            let plan = search(&mut planner, state, &mut rng, tries, time)?;
+            longest = longest.max(began.elapsed());
+            let mut torque = 0.0;
+            for step in 0.. {
+                let state = robot.pendulum.state();
+                let [theta1, _, dtheta1, _] = difference(state, State::UPRIGHT);
+                let has_fallen = step > 1000 && (theta1.abs() > 0.5 || dtheta1.abs() > 8.0);
+                if robot.rows.len() >= end || has_fallen {
+                    break;
+                }
+                if step < PLANNING {
+                    torque = brake(&robot);
+                } else if step % EVERY == 0 {
+                    torque = planner.follow(&plan, (step - PLANNING) / EVERY, state.cast()).into();
+                }
+                robot.step([0.0, torque])?;
+            }
+        }
+        // The reset: a controller of both joints' positions, which compensates for gravity.
+        let goal = RealAiGym.draw(RealAiGym::RESET_BOUNDS, &mut rng).cast::<f64>();
+        while i <= RESETS && robot.rows.len() < end + RESET {
+            let state = robot.pendulum.state();
+            let mut resting = robot.pendulum.clone();
+            resting.set_state(State { dtheta1: 0.0, dtheta2: 0.0, ..state })?;
+            let weights = inverse_dynamics(&resting, [0.0; 2])?.torques;
+            let errors = [goal.theta1 - state.theta1, goal.theta2 - state.theta2];
+            let last = before.replace(errors).unwrap_or(errors);
+            robot.step(from_fn(|j| {
+                sums[j] += errors[j];
+                // RealAIGym's gains are for steps of 0.001 s.
+                let rate = (errors[j] - last[j]) / 0.001;
+                let wanted = 10.0 * errors[j] + 0.1 * 0.001 * sums[j] + rate;
+                saturate(wanted, LIMIT) + weights[j]
+            }))?;
+        }
+    }
+    Ok((robot, longest))
+}
+
+/// The cheapest plan that ends upright; empty without any.
+fn search(
+    planner: &mut Planner<Fast>,
+    start: State<f32>,
+    rng: &mut Pcg64,
+    tries: u32,
+    time: Option<Duration>,
+) -> anyhow::Result<Vec<Knot<f32>>> {
+    const SIDE: u32 = 32;
+    let (began, mut tried, mut best) = (Instant::now(), 0, (f64::INFINITY, Vec::new()));
+    while match time {
+        Some(time) => began.elapsed() * (tried + SIDE) < time * tried.max(1),
+        None => tried < tries,
+    } {
+        tried += SIDE;
+        for plan in plans(planner, start, rng, 60.0, SIDE)? {
+            let end = plan.1.last().map(|knot| knot.state);
+            if plan.0 < best.0 && end.is_some_and(|end| planner.catches(end)) {
+                best = plan;
+            }
+        }
+    }
+    Ok(best.1)
+}
