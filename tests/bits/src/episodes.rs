@@ -172,8 +172,9 @@ fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
         torque_noise: Draw::Uniform { low: 0.0, high: 0.1 },
         ..Draws::FIXED
     });
-    let generators = [Pcg64::UNSEEDED; 8];
-    let memory = ([Block::EMPTY; BLOCKS], generators, [LaneParams::default(); BLOCKS], Draws::NONE);
+    let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 8]);
+    let mut own = [LaneParams::default(); BLOCKS];
+    let memory = (&mut blocks[..], &mut generators[..], &mut own[..], Draws::NONE);
     batch::<8, N, _>(memory, |batch| {
         // It does not fail: a failure changes the digest.
         let _ = draws.and_then(|draws| batch.set_draws(draws));

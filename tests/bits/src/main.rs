@@ -36,7 +36,7 @@ fn main() -> ! {
         report("batches of 1 lane", &batches::<1, 20, 8>(), &BATCHES),
         report("batches of 4 lanes", &batches::<4, 5, 2>(), &BATCHES),
         // More of them do not fit into 256 KiB of flash.
-        report("batch of 16 lanes", &[shared_params::<16, 2>()], &BATCHES[..1]),
+        report("batch of 8 lanes", &[shared_params::<8, 3>()], &BATCHES[..1]),
         // The learner and the plan do not fit into 16 KiB of RAM. The
         // firmware `learn` and `balance` compare them.
         cfg!(target_os = "none")
