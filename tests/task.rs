@@ -89,6 +89,13 @@ fn own_tasks_are_environments() {
 fn a_balanced_acrobot_is_upright_with_a_reward_of_1() {
     let mut acrobot = Acrobot::<Fast, Balance>::hanging(Pcg64::new(0));
     assert_eq!(acrobot.step(Action::Zero).reward, 0.0);
+    assert_eq!(acrobot.params().torques, [-10.0, 0.0, 10.0]);
+    let states = [0, 1, 2, 3].map(|seed| {
+        assert!(acrobot.reset_with_seed(seed)[0] < -0.99);
+        acrobot.state()
+    });
+    assert!(states.iter().all(|state| state.theta2.abs() <= 0.05));
+    assert!(states.iter().any(|state| state.theta2 < 0.0));
     acrobot.set_state(State::UPRIGHT).unwrap();
     assert_eq!(acrobot.step(Action::Zero).reward, 1.0);
 }
