@@ -5,8 +5,10 @@ use core::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::batch::VecBatch;
+use acrobot::control::{difference, regulator};
 use acrobot::env::Env;
 use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::{Pendulum, saturate};
 use acrobot::rand_core::Rng;
 use acrobot::task::{Balance, ResetBounds, Seen, Task};
 use acrobot::{Acrobot, Action, Fast, Params, State};
@@ -98,6 +100,24 @@ fn a_balanced_acrobot_is_upright_with_a_reward_of_1() {
     assert!(states.iter().any(|state| state.theta2 < 0.0));
     acrobot.set_state(State::UPRIGHT).unwrap();
     assert_eq!(acrobot.step(Action::Zero).reward, 1.0);
+}
+
+/// As docs/tasks.md says.
+#[test]
+fn a_regulator_stays_upright_from_100_initial_states() {
+    let params = Balance::PARAMS.cast();
+    let upright = Pendulum::<Fast>::new(params, State::UPRIGHT).unwrap();
+    let weights = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| f32::from(u8::from(i == j))));
+    let lqr = regulator(&upright, 0.0, &weights, 1.0).unwrap();
+    for seed in 0..100 {
+        let mut acrobot = Acrobot::<Fast, Balance>::new(seed);
+        for _ in 0..500 {
+            let torque = lqr.torque(difference(acrobot.state(), State::UPRIGHT));
+            acrobot.step_torque(saturate(torque, 10.0)).unwrap();
+        }
+        let x = difference(acrobot.state(), State::UPRIGHT);
+        assert!(x.iter().all(|x| x.abs() < 1e-3), "{seed}: {x:?}");
+    }
 }
 
 /// An acrobot and a batch hang at the point that they are given.
