@@ -13,14 +13,21 @@ pub(crate) fn friction<A: Arithmetic, V: Numbers<A::Scalar>>(
     [dtheta1, dtheta2]: [V; 2],
 ) -> [(V, V); 2] {
     let (viscous, coulomb) = (model.params.friction, model.params.coulomb);
-    let resist = |viscous: V, coulomb: V, dtheta: V| {
-        let (part, slope) = coulomb_friction::<A, V>(model, dtheta);
-        (viscous * dtheta + coulomb * part, viscous + coulomb * slope)
-    };
     [
-        resist(viscous.joint1, coulomb.joint1, dtheta1),
-        resist(viscous.joint2, coulomb.joint2, dtheta2),
+        resist::<A, V>(model, [viscous.joint1, coulomb.joint1], dtheta1),
+        resist::<A, V>(model, [viscous.joint2, coulomb.joint2], dtheta2),
     ]
+}
+
+// No closure, which LLVM may keep out of line, without its caller's SIMD.
+#[inline(always)]
+fn resist<A: Arithmetic, V: Numbers<A::Scalar>>(
+    model: &Model<V>,
+    [viscous, coulomb]: [V; 2],
+    dtheta: V,
+) -> (V, V) {
+    let (part, slope) = coulomb_friction::<A, V>(model, dtheta);
+    (viscous * dtheta + coulomb * part, viscous + coulomb * slope)
 }
 
 /// Coulomb friction as a part of its largest torque, and the slope by the velocity, s/rad.
