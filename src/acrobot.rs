@@ -63,9 +63,9 @@ impl<O> Step<O> {
 /// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any
 /// serde format can hold it, also in flattened structs and in tagged enums.
 ///
-/// The first field holds the type, the version (4), the [name of the task](Task::NAME) and the [name
-/// of the arithmetic](Arithmetic::NAME), with or without friction. Loading rejects another one,
-/// and what the setters reject; postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
+/// The first field holds the type, the version, the names of the [task](Task::NAME) and of the
+/// [arithmetic](Arithmetic::NAME), with or without friction. Loading rejects another one, and what
+/// the setters reject; postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
 /// [`TimeLimit`](crate::TimeLimit), is the size of a buffer for postcard.
 ///
 /// `Params`, `State` and [`Pcg64`] can also be saved alone, without a version.
@@ -126,12 +126,7 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
         self.advance(self.params().torque(action))
     }
 
-    /// Applies any finite torque, N m, for one dt. [`saturate`](crate::physics::saturate) limits it
-    /// to that of a motor.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] for a torque that is not finite.
+    /// Applies a torque, N m, for one dt as [`Pendulum::step`] does, with its errors.
     #[inline]
     pub fn step_torque(&mut self, torque: A::Scalar) -> Result<Step<T::Observation>, Error> {
         check_torque(torque)?;

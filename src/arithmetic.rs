@@ -174,8 +174,7 @@ impl Arithmetic for Micro {
     }
 }
 
-/// An arithmetic with [viscous friction](crate::physics::Joints) of the joints, which is 0 by
-/// default.
+/// An arithmetic with [friction](crate::physics::Joints) and a rotor, which are 0 by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Damped<A>(PhantomData<A>);

@@ -86,11 +86,8 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         step
     }
 
-    /// As [`step`](Self::step), with a torque in N m.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] for a torque that is not finite; nothing is added.
+    /// As [`step`](Self::step), with a torque, N m. With an error, that of
+    /// [`Acrobot::step_torque`], it adds nothing.
     pub fn step_torque<A: Arithmetic<Scalar = S>, T: Task, R: Rng>(
         &mut self,
         acrobot: &mut TimeLimit<Acrobot<A, T, R>>,
