@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use acrobot::arithmetic::{Arithmetic, Damped, Real as _};
+use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::control::{Estimator, Noise, difference};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Joints, Pendulum};
@@ -29,7 +29,10 @@ pub fn real() -> Params {
 }
 
 const COUNTS: f64 = 4096.0;
-const NOISE: Noise = Noise { angle: 1.8 / COUNTS, torque: 0.05 };
+
+fn noise<S: Real>() -> Noise<S> {
+    Noise { angle: S::from_f64(1.8 / COUNTS), torque: S::from_f64(0.05) }
+}
 
 /// A simulated machine with encoders, whose motor errs.
 pub struct Machine {
@@ -64,9 +67,7 @@ fn shake(rng: &mut Pcg64, tick: usize, torque: &mut f64) {
 /// The root of the mean square of the errors of both velocities, rad/s, and the part of the errors
 /// that are within two standard deviations.
 fn follow<A: Arithmetic>() -> (f64, f64) {
-    let noise =
-        Noise { angle: A::Scalar::from_f64(NOISE.angle), torque: A::Scalar::from_f64(0.05) };
-    let mut estimator = Estimator::<A>::new(real().cast(), noise).unwrap();
+    let mut estimator = Estimator::<A>::new(real().cast(), noise()).unwrap();
     let (mut machine, mut rng) = (Machine::new(real(), 1), Pcg64::new(2));
     let (mut torque, mut squares, mut within, mut count) = (0.0, 0.0, 0.0, 0.0);
     for tick in 0..5000 {
@@ -97,7 +98,7 @@ fn velocities_follow_from_angles() {
 /// A push changes both velocities at once.
 #[test]
 fn a_push_is_noticed_within_a_fiftieth_of_a_second() {
-    let mut estimator = Estimator::<Damped<Portable>>::new(real(), NOISE).unwrap();
+    let mut estimator = Estimator::<Damped<Portable>>::new(real(), noise()).unwrap();
     let mut machine = Machine::new(real(), 1);
     for tick in 0..520 {
         if tick == 500 {
@@ -116,12 +117,18 @@ fn a_push_is_noticed_within_a_fiftieth_of_a_second() {
     }
 }
 
-/// The inertias, and both moments of gravity.
-fn base(params: &Params) -> [f64; 5] {
+/// Those of link 1 with link 2's mass at its tip, and of link 2, about their joints, kg m².
+pub fn inertias(params: &Params) -> [f64; 2] {
     let Params { mass1, mass2, length1, center_of_mass1: lc1, center_of_mass2: lc2, .. } = *params;
     let upper = params.inertia1 + mass1 * lc1 * lc1 + mass2 * length1 * length1;
-    let link2 = params.inertia2 + mass2 * lc2 * lc2;
-    [upper, link2, mass2 * length1 * lc2, mass1 * lc1 + mass2 * length1, mass2 * lc2]
+    [upper, params.inertia2 + mass2 * lc2 * lc2]
+}
+
+/// What a motion tells: inertias, their coupling, and both moments of gravity.
+fn base(params: &Params) -> [f64; 5] {
+    let Params { mass1, mass2, length1, center_of_mass1, center_of_mass2, .. } = *params;
+    let ([upper, link2], moment2) = (inertias(params), mass2 * center_of_mass2);
+    [upper, link2, moment2 * length1, mass1 * center_of_mass1 + mass2 * length1, moment2]
 }
 
 #[test]
@@ -153,12 +160,9 @@ fn ten_seconds_of_motion_tell_the_parameters() {
                 coulomb: Joints { joint1: 0.02, joint2: 0.02 },
                 ..Params::DEFAULT
             };
-            let noise = Noise {
-                angle: A::Scalar::from_f64(NOISE.angle),
-                torque: A::Scalar::from_f64(0.05),
-            };
+            let (given, deviations) = (given.cast(), deviations.cast());
             let mut estimator =
-                Estimator::<A, 10>::with_params(given.cast(), deviations.cast(), noise).unwrap();
+                Estimator::<A, 10>::with_params(given, deviations, noise()).unwrap();
             let (mut machine, mut torque) = (Machine::new(truth, seed), 0.0);
             for tick in 0..5000 {
                 shake(&mut rng, tick, &mut torque);

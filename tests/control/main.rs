@@ -12,7 +12,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::control::{
     Forces, difference, inverse_dynamics, linearize, linearize_step, velocities,
 };
-use acrobot::physics::{Joints, Pendulum};
+use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, Portable, State};
 use common::{dynamics_of, lines, numbers, text_of};
 
@@ -53,23 +53,11 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
     for ((case, by_time), (by_step, motion)) in cases {
         let (dynamics, given) = case.split_once(' ').unwrap();
         let x: [f64; 22] = vector(&numbers(given));
-        let params = Params {
-            length1: x[0],
-            length2: x[1],
-            mass1: x[2],
-            mass2: x[3],
-            center_of_mass1: x[4],
-            center_of_mass2: x[5],
-            inertia1: x[6],
-            inertia2: x[7],
-            gravity: x[8],
-            dt: x[9],
-            dynamics: dynamics_of(dynamics),
-            friction: Joints { joint1: x[10], joint2: x[11] },
-            coulomb: Joints { joint1: x[12], joint2: x[13] },
-            rotor: x[14],
-            ..Params::default()
-        };
+        let mut params = Params { dynamics: dynamics_of(dynamics), ..Params::DEFAULT };
+        // The fields up to dt, then friction and the rotor.
+        let [links @ .., _, _, _, _, _, _, b1, b2, c1, c2, rotor] = params.numbers_mut();
+        let places = links.into_iter().chain([b1, b2, c1, c2, rotor]);
+        places.zip(x).for_each(|(place, x)| *place = x);
         let state = State::from(vector(&x[15..19])).cast();
         let pendulum = Pendulum::<A>::new(params.cast(), state).unwrap();
         let torque = Real::from_f64(x[19]);
