@@ -5,6 +5,7 @@ use acrobot::batch::VecBatch;
 use acrobot::control::inverse_dynamics;
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::{Dynamics, Joints, Pendulum};
+use acrobot::task::{Draw, Draws};
 use acrobot::{Acrobot, Params, Portable, State, TimeLimit};
 
 /// `Portable`'s scalar and sines with Gymnasium's form of the equations, where `Portable` has the
@@ -125,6 +126,8 @@ fn an_arithmetic_without_friction_rejects_it() {
     let rule = "friction.joint2 must be 0 unless the arithmetic is Damped, in N m s/rad, got 0.5";
     let friction = Joints { joint1: -0.0, joint2: 0.5 };
     let with = Params { friction, ..Params::DEFAULT };
+    let friction = Joints { joint1: Draw::Fixed, joint2: Draw::Uniform { low: 0.0, high: 0.5 } };
+    let draws = Draws::new(Params { friction, ..Draws::FIXED }).unwrap();
     let mut pendulum = Pendulum::<Portable>::hanging();
     let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(0));
     let mut batch = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
@@ -142,7 +145,7 @@ fn an_arithmetic_without_friction_rejects_it() {
         batch.set_params(with),
         batch.set_params_of(1, with),
         batch.set_member(1, member),
-        batch.set_draws(common::between(Params::DEFAULT, with)),
+        batch.set_draws(draws),
     ] {
         assert_eq!(result.unwrap_err().to_string(), rule);
     }

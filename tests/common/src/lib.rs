@@ -8,10 +8,9 @@ pub mod twins;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use acrobot::State;
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::physics::{Dynamics, Joints};
 use acrobot::task::{Draw, Draws};
-use acrobot::{Params, State};
 
 pub use bits::Digest;
 pub use recording::*;
@@ -47,42 +46,25 @@ macro_rules! in_every_arithmetic {
     }};
 }
 
-/// Uniform draws of all parameters that differ.
-pub fn between<S: Real>(low: Params<S>, high: Params<S>) -> Draws<S> {
+/// Uniform draws of all parameters that an arithmetic has, each from a wide range.
+pub fn draws<A: Arithmetic>() -> Draws<A::Scalar> {
+    let friction = [0.5, 0.3, 0.2, 0.1, 0.05].map(|most| [0.0, most]);
+    let ranges = [
+        &[[0.5, 2.0]; 4][..],                     // lengths and masses
+        &[[0.0, 1.0]; 2],                         // centres of mass
+        &[[0.5, 2.0]; 2],                         // inertias
+        &[[1.6, 24.8], [0.05, 0.3]],              // gravity and dt
+        &[[5.0, 20.0], [5.0, 40.0]],              // bounds of velocities
+        &[[-2.0, -0.5], [-0.5, 0.5], [0.5, 2.0]], // torques
+        &[[0.0, 0.5]],                            // noise
+        if A::HAS_FRICTION { &friction } else { &[] },
+    ];
     let mut draws = Draws::FIXED;
-    let ends = low.numbers().into_iter().zip(high.numbers());
-    for (draw, ((_, low), (_, high))) in draws.numbers_mut().into_iter().zip(ends) {
-        if low != high {
-            *draw = Draw::Uniform { low, high };
-        }
+    for (draw, range) in draws.numbers_mut().into_iter().zip(ranges.concat()) {
+        let [low, high] = range.map(Real::from_f64);
+        *draw = Draw::Uniform { low, high };
     }
     Draws::new(draws).unwrap()
-}
-
-/// All parameters that an arithmetic has, each from a wide range.
-pub fn draws<A: Arithmetic>() -> Draws<A::Scalar> {
-    let friction = |most: f64| if A::HAS_FRICTION { most } else { 0.0 };
-    let [low, high] = [0, 1].map(|i| Params {
-        length1: [0.5, 2.0][i],
-        length2: [0.5, 2.0][i],
-        mass1: [0.5, 2.0][i],
-        mass2: [0.5, 2.0][i],
-        center_of_mass1: [0.0, 1.0][i],
-        center_of_mass2: [0.0, 1.0][i],
-        inertia1: [0.5, 2.0][i],
-        inertia2: [0.5, 2.0][i],
-        gravity: [1.6, 24.8][i],
-        dt: [0.05, 0.3][i],
-        max_velocity1: [5.0, 20.0][i],
-        max_velocity2: [5.0, 40.0][i],
-        torques: [[-2.0, -0.5, 0.5], [-0.5, 0.5, 2.0]][i],
-        torque_noise: [0.0, 0.5][i],
-        dynamics: Dynamics::Book,
-        friction: Joints { joint1: [0.0, friction(0.5)][i], joint2: [0.0, friction(0.3)][i] },
-        coulomb: Joints { joint1: [0.0, friction(0.2)][i], joint2: [0.0, friction(0.1)][i] },
-        rotor: [0.0, friction(0.05)][i],
-    });
-    between(low.cast(), high.cast())
 }
 
 /// Fails with the text that a page of the docs should contain. Line breaks do not count.
