@@ -189,7 +189,6 @@ fn any_calls_in_any_order_equal_single_acrobots() {
 #[test]
 fn every_arithmetic_equals_single_acrobots() {
     Twins::<Micro>::at_every_level();
-    Twins::<Portable, 4>::at_every_level();
     Twins::<Reference>::at_every_level();
     Twins::<Host>::at_every_level();
     Twins::<Micro>::at_any_angle();
@@ -199,6 +198,5 @@ fn every_arithmetic_equals_single_acrobots() {
 #[test]
 fn any_width_equals_single_acrobots() {
     Twins::<Fast, 1>::at_every_level();
-    Twins::<Fast, 3>::at_every_level();
     Twins::<Fast, 32>::at_every_level();
 }

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use acrobot::arithmetic::{Arithmetic, Modeled, Real};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::{Dynamics, Joints, Pendulum};
+use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Params, State};
 use proptest::num::{f32, f64};
@@ -93,49 +93,28 @@ fn positive<S: Number>(range: Range, usual: f64) -> BoxedStrategy<S> {
 }
 
 pub fn params<A: Tested>(range: Range) -> BoxedStrategy<Params<A::Scalar>> {
+    let zero = || Just(A::Scalar::ZERO);
     let above_0 = |usual| positive::<A::Scalar>(range, usual);
-    let or_0 = |usual| prop_oneof![4 => above_0(usual), 1 => Just(A::Scalar::ZERO)].boxed();
-    let Params { dt, max_velocity1, max_velocity2, .. } = Params::DEFAULT;
-    let of_links = [(); 4].map(|()| above_0(1.0));
-    let limits = [dt, max_velocity1, max_velocity2].map(above_0);
-    let others = [0.5, 0.5, 1.0, 1.0].map(or_0);
-    let friction = [0.05; 5].map(|usual| match A::HAS_FRICTION {
-        true => or_0(usual),
-        false => Just(A::Scalar::ZERO).boxed(),
+    let or_0 = |usual| prop_oneof![4 => above_0(usual), 1 => zero()].boxed();
+    let numbers = Params::DEFAULT.numbers().map(|(name, usual)| match name {
+        "center_of_mass1" | "center_of_mass2" | "inertia1" | "inertia2" => or_0(usual),
+        "gravity" => prop_oneof![Just(A::Scalar::from_f64(usual)), number(range)].boxed(),
+        "torques[0]" | "torques[1]" | "torques[2]" => number(range),
+        "torque_noise" => prop_oneof![2 => zero(), 1 => above_0(1.0)].boxed(),
+        _ if usual > 0.0 => above_0(usual),
+        _ if A::HAS_FRICTION => or_0(0.05),
+        _ => zero().boxed(),
     });
-    let gravity = prop_oneof![1 => Just(A::Scalar::from_f64(9.8)), 1 => number(range)];
-    let torques = [(); 3].map(|()| number::<A::Scalar>(range));
-    let noise = prop_oneof![2 => Just(A::Scalar::ZERO), 1 => above_0(1.0)];
     let dynamics = prop_oneof![Just(Dynamics::Book), Just(Dynamics::Nips)];
-    let all = (of_links, limits, others, gravity, torques, noise, dynamics, friction);
-    all.prop_map(|(links, limits, others, gravity, torques, torque_noise, dynamics, friction)| {
-        let [length1, length2, mass1, mass2] = links;
-        let [dt, max_velocity1, max_velocity2] = limits;
-        let [center_of_mass1, center_of_mass2, inertia1, inertia2] = others;
-        let [viscous1, viscous2, coulomb1, coulomb2, rotor] = friction;
-        Params {
-            length1,
-            length2,
-            mass1,
-            mass2,
-            center_of_mass1,
-            center_of_mass2,
-            inertia1,
-            inertia2,
-            gravity,
-            dt,
-            max_velocity1,
-            max_velocity2,
-            torques,
-            torque_noise,
-            dynamics,
-            friction: Joints { joint1: viscous1, joint2: viscous2 },
-            coulomb: Joints { joint1: coulomb1, joint2: coulomb2 },
-            rotor,
-        }
-    })
-    .prop_filter("valid parameters", |params| params.validate().is_ok())
-    .boxed()
+    (numbers, dynamics)
+        .prop_map(|(numbers, dynamics)| {
+            let mut params = Params { dynamics, ..Params::DEFAULT };
+            let places = params.numbers_mut().into_iter().zip(numbers);
+            places.for_each(|(place, number)| *place = number);
+            params
+        })
+        .prop_filter("valid parameters", |params| params.validate().is_ok())
+        .boxed()
 }
 
 pub fn state<S: Number>(range: Range) -> BoxedStrategy<State<S>> {
