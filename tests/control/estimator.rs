@@ -117,18 +117,12 @@ fn a_push_is_noticed_within_a_fiftieth_of_a_second() {
     }
 }
 
-/// Those of link 1 with link 2's mass at its tip, and of link 2, about their joints, kg m².
-pub fn inertias(params: &Params) -> [f64; 2] {
+/// The inertias, and both moments of gravity.
+fn base(params: &Params) -> [f64; 5] {
     let Params { mass1, mass2, length1, center_of_mass1: lc1, center_of_mass2: lc2, .. } = *params;
     let upper = params.inertia1 + mass1 * lc1 * lc1 + mass2 * length1 * length1;
-    [upper, params.inertia2 + mass2 * lc2 * lc2]
-}
-
-/// What a motion tells: inertias, their coupling, and both moments of gravity.
-fn base(params: &Params) -> [f64; 5] {
-    let Params { mass1, mass2, length1, center_of_mass1, center_of_mass2, .. } = *params;
-    let ([upper, link2], moment2) = (inertias(params), mass2 * center_of_mass2);
-    [upper, link2, moment2 * length1, mass1 * center_of_mass1 + mass2 * length1, moment2]
+    let link2 = params.inertia2 + mass2 * lc2 * lc2;
+    [upper, link2, mass2 * length1 * lc2, mass1 * lc1 + mass2 * length1, mass2 * lc2]
 }
 
 #[test]
