@@ -7,8 +7,7 @@ use acrobot::numpy::SeedSequence;
 use acrobot::task::ResetBounds;
 use acrobot::{Error, ResetOptions, State};
 use numpy::{
-    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1,
-    PyReadwriteArray2, PyUntypedArrayMethods,
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -24,17 +23,17 @@ pub struct Batch {
     /// Whether the actions are torques.
     continuous: bool,
     threads: NonZeroU32,
-    pool: Option<Pool>,
+    pool: Pool,
 }
 
 #[pymethods]
 impl Batch {
     #[new]
-    #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed="0", max_episode_steps=NonZeroU32::MAX,
+    #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed=None, max_episode_steps=NonZeroU32::MAX,
         mode="NextStep", kind=("acrobot", "float32"), continuous=false, threads=NonZeroU32::MIN))]
     fn new(
         num_envs: NonZeroU32,
-        seed: &str,
+        seed: Option<Bound<'_, PyAny>>,
         max_episode_steps: NonZeroU32,
         mode: &str,
         kind: (&str, &str),
@@ -47,13 +46,14 @@ impl Batch {
             _ => Autoreset::Disabled,
         };
         let ((task, arithmetic), len) = (kind, num_envs.get() as usize);
-        let engine = Engine::new(arithmetic, AnyTask::named(task), len, parse(seed)?);
+        let seed = seed.map_or(Ok(SeedSequence::new(0)), parse)?;
+        let engine = Engine::new(arithmetic, AnyTask::named(task), len, seed);
         let mut engine = engine.map_err(out_of_memory)?;
         with_batch!(&mut engine, many => {
             many.batch.set_max_steps(max_episode_steps);
             many.batch.set_autoreset(mode);
         });
-        Ok(Self { engine, continuous, threads, pool: None })
+        Ok(Self { engine, continuous, threads, pool: Pool::default() })
     }
 
     fn __len__(&self) -> usize {
@@ -70,21 +70,14 @@ impl Batch {
         with_batch!(&mut alone(slf)?.engine, many => many.set_drawn(name, drawn))
     }
 
-    /// Writes the numbers of a parameter: a row for each acrobot, of three of `AVAIL_TORQUE`.
-    fn get(
-        slf: &Bound<'_, Self>,
-        name: &str,
-        mut rows: PyReadwriteArray2<'_, f64>,
-    ) -> PyResult<()> {
+    /// The numbers of a parameter of each acrobot: three of `AVAIL_TORQUE`, two of `LINK_MOI`.
+    fn get<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let this = alone(slf)?;
-        let width = rows.shape()[1].max(1);
-        for (index, row) in rows.as_slice_mut()?.chunks_mut(width).enumerate() {
-            let params = with_batch!(&this.engine, many => many.params(index));
-            for (number, place) in row.iter_mut().zip(places(name)) {
-                *number = params.numbers()[place].1;
-            }
-        }
-        Ok(())
+        let numbers = (0..this.__len__()).flat_map(|index| {
+            let numbers = with_batch!(&this.engine, many => many.params(index)).numbers();
+            places(name).map(move |place| numbers[place].1)
+        });
+        Ok(PyArray1::from_iter(slf.py(), numbers))
     }
 
     /// Resets all acrobots, or those that the mask selects, to initial states within these bounds,
@@ -92,8 +85,8 @@ impl Batch {
     /// whose seed is not `None` that of `default_rng(seed)`.
     fn reset(
         slf: &Bound<'_, Self>,
-        seed: Option<&str>,
-        seeds: Option<Vec<Option<String>>>,
+        seed: Option<Bound<'_, PyAny>>,
+        seeds: Option<Vec<Option<Bound<'_, PyAny>>>>,
         low: f64,
         high: f64,
         mask: Option<PyReadonlyArray1<'_, bool>>,
@@ -104,7 +97,7 @@ impl Batch {
             bounds: Some(ResetBounds::new(low, high).map_err(rejected)?),
         };
         let seeds = seeds.unwrap_or_default().into_iter();
-        let seeds = seeds.map(|seed| seed.as_deref().map(parse).transpose());
+        let seeds = seeds.map(|seed| seed.map(parse).transpose());
         let seeds = seeds.collect::<PyResult<Vec<_>>>()?;
         let mask = mask.as_ref().map(|mask| mask.as_slice()).transpose()?;
         let states = states.as_ref().map(|rows| rows.as_slice()).transpose()?;
@@ -180,7 +173,7 @@ impl Batch {
         match len.div_ceil(task).min(this.threads.get() as usize) {
             1 => py.detach(|| with_batch!(engine, many => many.step(buffers, false))),
             threads => {
-                let pool = Pool::of_this_process(&mut this.pool, threads)?;
+                let pool = this.pool.of_this_process(threads)?;
                 let step = || with_batch!(engine, many => many.step(buffers, true));
                 py.detach(|| pool.install(step))
             }
@@ -193,14 +186,13 @@ impl Batch {
         ))
     }
 
-    /// Writes θ1, θ2 and their velocities, a row for each acrobot.
-    fn states(slf: &Bound<'_, Self>, mut states: PyReadwriteArray2<'_, f64>) -> PyResult<()> {
+    /// θ1, θ2 and their velocities of each acrobot.
+    fn states<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let this = alone(slf)?;
-        let rows = states.as_slice_mut()?.as_chunks_mut().0;
-        for (index, row) in rows.iter_mut().enumerate() {
-            *row = with_batch!(&this.engine, many => many.state(index)).into();
-        }
-        Ok(())
+        let states = (0..this.__len__()).flat_map(|index| {
+            <[f64; 4]>::from(with_batch!(&this.engine, many => many.state(index)))
+        });
+        Ok(PyArray1::from_iter(slf.py(), states))
     }
 
     /// Sets all states. Episodes continue.
@@ -218,14 +210,13 @@ impl Batch {
         }))
     }
 
-    /// Writes the number of steps of each acrobot's episode.
-    fn elapsed(slf: &Bound<'_, Self>, mut elapsed: PyReadwriteArray1<'_, i64>) -> PyResult<()> {
+    /// The number of steps of each acrobot's episode.
+    fn elapsed<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let this = alone(slf)?;
-        for (index, elapsed) in elapsed.as_slice_mut()?.iter_mut().enumerate() {
-            let steps = with_batch!(&this.engine, many => many.batch.elapsed_steps_of(index));
-            *elapsed = steps.unwrap_or_default().into();
-        }
-        Ok(())
+        let steps = (0..this.__len__()).filter_map(
+            |index| with_batch!(&this.engine, many => many.batch.elapsed_steps_of(index)),
+        );
+        Ok(PyArray1::from_iter(slf.py(), steps.map(i64::from)))
     }
 
     fn render<'py>(
@@ -252,12 +243,12 @@ impl Batch {
     fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
         let mut this = alone(slf)?;
         (this.continuous, this.threads, this.engine) = load(bytes)?;
-        this.pool = None;
+        this.pool = Pool::default();
         Ok(())
     }
 }
 
-/// Parses a seed: a decimal integer of at least 0, of any size.
-fn parse(seed: &str) -> PyResult<SeedSequence> {
-    seed.parse::<SeedSequence>().map_err(rejected)
+/// A seed, an integer of at least 0.
+fn parse(seed: Bound<'_, PyAny>) -> PyResult<SeedSequence> {
+    seed.str()?.to_str()?.parse::<SeedSequence>().map_err(rejected)
 }

@@ -30,9 +30,8 @@ def test_draws_are_those_of_numpy(children):
 
     def drawn(envs):
         """LINK_MOI of both links."""
-        columns = [np.empty((len(rows), count)) for count in (1, 2, 1)]
-        for name, column in zip(("LINK_MASS_2", "LINK_MOI", "gravity"), columns, strict=True):
-            envs._native.get(name, column)
+        names = "LINK_MASS_2", "LINK_MOI", "gravity"
+        columns = [envs._native.get(name).reshape(len(rows), -1) for name in names]
         return np.hstack([*columns, envs.state]).astype(np.float32)
 
     envs.reset(seed=42 if children else [int(row[0]) for row in rows])

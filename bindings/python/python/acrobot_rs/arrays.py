@@ -104,17 +104,17 @@ def values_of_each(name: str, value: Any, num_envs: int) -> list[Any] | None:
 
 def seeds_of(
     seed: Seed, num_envs: int, gymnasium_episodes: bool
-) -> tuple[str | None, list[str | None] | None]:
-    """The digits of the seed whose children seed all environments, or of a seed for each."""
+) -> tuple[int | None, list[int | None] | None]:
+    """The seed whose children seed all environments, or a seed for each."""
     if isinstance(seed, list | tuple):
         if len(seed) != num_envs:
             rule = f"one element for each of {num_envs} environments"
             raise ValueError(f"seed must have {rule}, got {len(seed)}")
-        return None, [_digits(each) for each in seed]
+        return None, [plain_seed(each) for each in seed]
     plain = plain_seed(seed)
     if plain is None or not gymnasium_episodes:
-        return _digits(plain), None
-    return None, [_digits(plain + i) for i in range(num_envs)]
+        return plain, None
+    return None, [plain + i for i in range(num_envs)]
 
 
 def plain_seed(seed: Any) -> int | None:
@@ -124,11 +124,6 @@ def plain_seed(seed: Any) -> int | None:
     if not isinstance(seed, Integral) or seed < 0:
         raise must_be("seed", "an integer of at least 0", repr(seed), Error)
     return int(seed)
-
-
-def _digits(seed: Any) -> str | None:
-    """The digits of a seed. `str` rejects more than 4,300."""
-    return None if seed is None else str(plain_seed(seed))
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

@@ -98,7 +98,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         mode = AutoresetMode(autoreset_mode)
         arithmetic = "gymnasium" if gymnasium_episodes else "float64" if float64 else "float32"
         native = Batch(
-            *(num_envs, str(self.np_random_seed), limit, mode.value, (self._TASK, arithmetic)),
+            *(num_envs, self.np_random_seed, limit, mode.value, (self._TASK, arithmetic)),
             *(self._CONTINUOUS, threads),
         )
         self.autoreset_mode = mode
@@ -217,8 +217,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         ``reset(options={"state": states})`` begins episodes instead. In mode ``NextStep`` the step
         after an episode's end still resets.
         """
-        states = np.empty((self.num_envs, 4), np.float64)
-        self._native.states(states)
+        states = self._native.states().reshape(-1, 4)
         return read_only(states if self._float64 else states.astype(np.float32))
 
     @state.setter
@@ -228,9 +227,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     @property
     def elapsed_steps(self) -> NDArray[np.int64]:
         """The number of steps of each environment's episode, of shape ``(num_envs,)``."""
-        elapsed = np.empty(self.num_envs, np.int64)
-        self._native.elapsed(elapsed)
-        return read_only(elapsed)
+        return read_only(self._native.elapsed())
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """The value of an attribute for each environment, or the results of its method ``render``.
@@ -259,8 +256,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if value is not None and not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
-        rows = np.empty((self.num_envs, 3 if is_row else 1))
-        self._native.get(name, rows)
+        rows = self._native.get(name).reshape(self.num_envs, -1)
         return rows if is_row else rows[:, 0]
 
     def set_attr(self, name: str, values: Any) -> None:
