@@ -73,7 +73,7 @@ async function bundle(entry, library) {
   // For CommonJS: a file that loads the same module, and the types, which ES modules can import.
   writeFileSync(`dist/${entry}.cjs`, `module.exports = require("./${entry}.js");\n`);
   const types = readFileSync(`package/${entry}.d.ts`, "utf8");
-  writeFileSync(`dist/${entry}.d.cts`, types.replace('"./index.js"', '"./index.cjs"'));
+  writeFileSync(`dist/${entry}.d.cts`, types.replaceAll('"./index.js"', '"./index.cjs"'));
   writeFileSync(`dist/${entry}.d.ts`, `export * from "./${entry}.cjs";\n`);
 }
 

@@ -3,8 +3,8 @@
 import {
   ACTION, Environment, TASKS, drawOne, isAction, load, readState, setState,
 } from "./environment.js";
-import { addressOf, call, isFinite32, writeSeed } from "./kept.js";
-import { integers, invalid, invalidSingle, numbers, wasm } from "./wasm.js";
+import { addressOf, call, writeSeed } from "./kept.js";
+import { integers, invalid, invalidSingle, isFinite32, numbers, wasm } from "./wasm.js";
 
 /** A loop, because `slice` takes half as long again. */
 function observation() {

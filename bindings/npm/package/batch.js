@@ -4,8 +4,8 @@ import {
   ACTION, AUTORESETS, Environment, TASKS, changeParams, drawOne, isAction, load, readParams,
   readState, setState,
 } from "./environment.js";
-import { addressOf, call, elements, isFinite32, writeSeed } from "./kept.js";
-import { integers, invalid, numbers, wasm } from "./wasm.js";
+import { addressOf, call, elements, writeSeed } from "./kept.js";
+import { integers, invalid, isFinite32, numbers, wasm } from "./wasm.js";
 
 /**
  * The results, and what JavaScript writes, in the order of the module's addresses: type, and number

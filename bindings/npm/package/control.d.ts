@@ -107,8 +107,5 @@ export class Planner {
   [Symbol.dispose](): void;
 }
 
-/** As in `acrobot-rs`, for this file's module. */
-export function moduleBytes(): Uint8Array;
-
-/** As in `acrobot-rs`, for this file's module. */
-export function setModule(module: object): void;
+// For the module of this file.
+export { moduleBytes, setModule } from "./index.js";

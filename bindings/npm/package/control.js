@@ -1,11 +1,12 @@
 // Linear models, regulators and a planner, in a separate module, as control.d.ts describes them.
 
 import {
-  Kept, STATE, accept, allocated, call, checkNumber, checkedState, elements, isFinite32, isNumber,
-  parameters, readSlots, writeSeed, writeSlots,
+  Kept, accept, allocated, call, checkNumber, elements, parameters, readSlots, writeSeed,
+  writeSlots, writeState,
 } from "./kept.js";
 import {
-  camelCase, checked, integers, invalid, numbers, positive, randomSeed, text, wasm,
+  camelCase, checked, integers, invalid, isFinite32, isNumber, numbers, positive, randomSeed, text,
+  wasm,
 } from "./wasm.js";
 
 export { moduleBytes, setModule } from "./wasm.js";
@@ -15,7 +16,10 @@ const COST = [
   "angles[0]", "angles[1]", "velocities[0]", "velocities[1]", "torque", "torqueChange", "power",
   "below", "height", "margin", "arrival",
 ];
-/** The first words of a regulator's weights and of a state. */
+/**
+ * The first words of a regulator's weights and of a state, which is written after all other
+ * arguments, because reading these can run code.
+ */
 const [WEIGHTS, STATE_WORD] = [22, 64];
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
 
@@ -43,19 +47,12 @@ function acceptAll(kind, given) {
   throw new RangeError(MESSAGES[kind - 4](value, camelCase(text(1)), other));
 }
 
-/** Writes a state. It comes after all other arguments, because reading these can run code. */
-function writeState(state) {
-  const given = checkedState(state);
-  numbers().set(STATE.map((name) => given[name]), STATE_WORD);
-  return given;
-}
-
 /** Calls a function of the module for a pendulum. Returns the matrix and the vector it writes. */
 function compute(name, state, torque, params, option, weights = []) {
   const names = parameters();
   const given = readSlots("params", params, names);
   checkNumber("torque", torque);
-  const at = writeState(state);
+  const at = writeState(state, STATE_WORD);
   const mask = writeSlots(given, names);
   numbers().set(weights, WEIGHTS);
   acceptAll(wasm()[name](mask, torque, option), { ...given, ...at, torque, r: weights.at(-1) });
@@ -130,7 +127,7 @@ export class Planner extends Kept {
     const { tries = 64, seed = randomSeed(), steps } = given;
     positive("tries", tries);
     positive("steps", steps);
-    const state = writeState(start);
+    const state = writeState(start, STATE_WORD);
     this.#resize(steps);
     const kind = call(this, "plan", writeSeed(seed), tries);
     if (kind === NOT_FOUND) return null;
@@ -145,7 +142,7 @@ export class Planner extends Kept {
   improve(start, iterations, plan) {
     positive("iterations", iterations);
     const knots = Array.from({ length: lengthOf(plan) }, (_, step) => knotOf(plan, step));
-    const state = writeState(start);
+    const state = writeState(start, STATE_WORD);
     this.#resize(knots.length);
     knots.forEach((knot, step) => {
       numbers().set(knot);
@@ -163,13 +160,13 @@ export class Planner extends Kept {
     }
     const isPlanned = step < lengthOf(plan);
     const knot = isPlanned ? knotOf(plan, step) : [];
-    writeState(state);
+    writeState(state, STATE_WORD);
     numbers().set(knot);
     return call(this, "follow", isPlanned);
   }
 
   decide(state) {
-    const at = writeState(state);
+    const at = writeState(state, STATE_WORD);
     acceptAll(call(this, "decide"), at);
     return numbers()[0];
   }

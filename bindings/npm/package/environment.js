@@ -2,11 +2,11 @@
 
 import { draw } from "./draw.js";
 import {
-  DYNAMICS, Kept, STATE, accept, allocated, call, checkedState, elements, indexOf, isNumber,
-  parameters, readSlots, writeSeed, writeSlots,
+  DYNAMICS, Kept, STATE, accept, allocated, call, elements, indexOf, parameters, readSlots,
+  writeSeed, writeSlots, writeState,
 } from "./kept.js";
 import {
-  bytes, checked, copied, integers, invalid, numbers, positive, randomSeed, wasm,
+  bytes, checked, copied, integers, invalid, isNumber, numbers, positive, randomSeed, wasm,
 } from "./wasm.js";
 
 export const TASKS = ["acrobot", "swingup", "balance"];
@@ -105,8 +105,7 @@ export function drawOne(kept, index, context, options) {
 }
 
 export function setState(kept, state, index) {
-  const given = checkedState(state);
-  numbers().set(STATE.map((name) => given[name]));
+  const given = writeState(state);
   accept(call(kept, "set_state", index), given);
 }
 

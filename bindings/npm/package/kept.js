@@ -1,15 +1,12 @@
 // What the modules share: what they keep in their memory, and checks of arguments.
 
 import {
-  Opaque, camelCase, checked, integers, invalid, invalidSingle, numbers, seedWords, text, wasm,
+  Opaque, camelCase, checked, integers, invalid, invalidSingle, isNumber, numbers, seedWords, text,
+  wasm,
 } from "./wasm.js";
 
 export const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
 export const DYNAMICS = ["book", "nips"];
-
-export const isNumber = (value) => typeof value === "number";
-
-export const isFinite32 = (number) => isNumber(number) && Number.isFinite(Math.fround(number));
 
 export function checkNumber(name, value) {
   if (!isNumber(value)) throw invalid(`${name} must be a number`, value);
@@ -33,6 +30,14 @@ export function elements(what, array, count, isValid, rule) {
   const wrong = copy.findIndex((element) => !isValid(element));
   if (wrong >= 0) throw invalidSingle(`${what}[${wrong}] ${rule}`, copy[wrong]);
   return copy;
+}
+
+/** Writes the four numbers of a state from a word on. Returns them by their names. */
+export function writeState(state, at = 0) {
+  const given = checked("state", state, STATE);
+  for (const name of STATE) checkNumber(name, given[name]);
+  numbers().set(STATE.map((name) => given[name]), at);
+  return given;
 }
 
 /** Writes a seed into the module's words, if there is one. Returns the number of its words. */
@@ -150,11 +155,4 @@ export class Kept extends Opaque {
   [Symbol.dispose ?? Symbol("dispose")]() {
     this.free();
   }
-}
-
-/** The four numbers of a state, by their names. */
-export function checkedState(state) {
-  const given = checked("state", state, STATE);
-  for (const name of STATE) checkNumber(name, given[name]);
-  return given;
 }

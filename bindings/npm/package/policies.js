@@ -1,7 +1,8 @@
 // Policies, and a learner in a separate module. policies.d.ts describes the interface.
 
 import {
-  Opaque, checked, copied, decoded, instantiate, invalidSingle, positive, randomSeed, seedWords,
+  Opaque, checked, copied, decoded, instantiate, invalidSingle, isFinite32, positive, randomSeed,
+  seedWords,
 } from "./wasm.js";
 
 export { moduleBytes, setModule } from "./wasm.js";
@@ -10,8 +11,7 @@ export { moduleBytes, setModule } from "./wasm.js";
 const finite = (what, object, names) =>
   names.map((name) => {
     const number = object?.[name];
-    const valid = typeof number === "number" && Number.isFinite(Math.fround(number));
-    if (!valid) throw invalidSingle(`${what}.${name} must be a finite number`, number);
+    if (!isFinite32(number)) throw invalidSingle(`${what}.${name} must be a finite number`, number);
     return number;
   });
 

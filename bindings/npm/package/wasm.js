@@ -127,6 +127,10 @@ export function checked(what, given, names) {
   return copy;
 }
 
+export const isNumber = (value) => typeof value === "number";
+
+export const isFinite32 = (number) => isNumber(number) && Number.isFinite(Math.fround(number));
+
 /** An integer from 1 to 2³² − 1. */
 export function positive(name, value) {
   if (!Number.isInteger(value) || value < 1 || value >= 2 ** 32) {

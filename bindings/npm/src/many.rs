@@ -152,11 +152,6 @@ pub extern "C" fn settings(many: &Many) {
     let (max_steps, autoreset, own_params) = with_task!(&many.batch, batch => {
         (batch.max_steps(), batch.autoreset(), batch.has_own_params())
     });
-    let autoreset = match autoreset {
-        Autoreset::SameStep => 1,
-        Autoreset::Disabled => 2,
-        _ => 0,
-    };
     let addresses = [
         many.observations.as_ptr().addr(),
         many.rewards.as_ptr().addr(),
@@ -171,7 +166,7 @@ pub extern "C" fn settings(many: &Many) {
     let [a, b, c, d, e, f, g, h, i] = addresses.map(|address| address as u32);
     let (count, task) = (many.actions.len() as u32, many.batch.number());
     let (limit, own) = (max_steps.get(), own_params.into());
-    memory::set(&[count, limit, autoreset, own, task, a, b, c, d, e, f, g, h, i]);
+    memory::set(&[count, limit, autoreset as u32, own, task, a, b, c, d, e, f, g, h, i]);
 }
 
 /// Resets the acrobots in the mask, or the one alone.

@@ -6,11 +6,10 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { Acrobot, Batch } from "../dist/index.js";
+import { camelCase } from "../package/wasm.js";
 import { assertRejected } from "./module.mjs";
 
 const path = new URL("../../../tests/data/rejections.jsonl", import.meta.url);
-const camel = (name) =>
-  name.replace(".joint", "").replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 /** JSON has no numbers that are not finite. */
 const number = (value) => (value === "inf" ? Infinity : value === "-inf" ? -Infinity : +value);
 
@@ -20,7 +19,7 @@ function changes(set) {
   for (const [name, value] of Object.entries(set)) {
     const [, index] = /^torques\[(.)\]/.exec(name) ?? [];
     if (index) given.torques = [-1, 0, 1].with(index, number(value));
-    else given[camel(name)] = number(value);
+    else given[camelCase(name)] = number(value);
   }
   return given;
 }
@@ -66,7 +65,7 @@ test("what Rust rejects is rejected with the same message, and nothing changes",
     const [name] = row.message.split(" must be ");
     const rest = row.message.slice(name.length).replace(/inf$/, "Infinity");
     for (const call of CALLS[row.call](row)) {
-      const error = { name: "RangeError", message: camel(name) + rest };
+      const error = { name: "RangeError", message: camelCase(name) + rest };
       assert.throws(() => call(acrobot, batch), error);
       assert.deepEqual(snapshots(), before, row.message);
     }
