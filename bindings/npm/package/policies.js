@@ -45,20 +45,21 @@ class Instance {
     return new Uint8Array(this.exports.memory.buffer, this.exports.buffer(), length);
   }
 
-  /** Calls `load` or `load_perceptron` with a file in the buffer. */
-  load(what, file, name) {
+  /** Calls `load` with the length of a file in the buffer. */
+  load(what, file, load) {
     const copy = copied(what, file);
     const { length } = copy;
     const rule = `${what} must have at most ${BUFFER} bytes`;
     if (length > BUFFER) throw new RangeError(`${rule}, got ${length}`);
     this.bytes(length).set(copy);
-    const reason = this.exports[name](length);
+    const reason = load(length);
     if (reason !== 0) throw new RangeError(decoded(this.bytes(reason)));
   }
 }
 
 export class Learner extends Opaque {
   #module;
+  #training;
 
   constructor(options = {}) {
     super();
@@ -68,24 +69,26 @@ export class Learner extends Opaque {
     const words = seedWords(seed);
     this.#module = new Instance();
     this.#module.bytes(4 * words.length).set(new Uint8Array(Uint32Array.from(words).buffer));
-    this.#module.exports.begin(episodes, words.length);
+    this.#training = this.#module.exports.begin(episodes, words.length);
   }
 
   train() {
-    return this.#module.exports.train();
+    return this.#module.exports.train(this.#training);
   }
 
   act(acrobot) {
     const names = ["theta1", "theta2", "dtheta1", "dtheta2"];
-    return this.#module.exports.act(...finite("acrobot.state", acrobot?.state, names));
+    const state = finite("acrobot.state", acrobot?.state, names);
+    return this.#module.exports.act(this.#training, ...state);
   }
 
   save() {
-    return this.#module.bytes(this.#module.exports.save()).slice();
+    return this.#module.bytes(this.#module.exports.save(this.#training)).slice();
   }
 
   load(weights) {
-    this.#module.load("weights", weights, "load");
+    const { load } = this.#module.exports;
+    this.#module.load("weights", weights, (length) => load(this.#training, length));
   }
 }
 
@@ -94,7 +97,7 @@ export class Perceptron extends Opaque {
 
   constructor(file) {
     super();
-    this.#module.load("the policy", file, "load_perceptron");
+    this.#module.load("the policy", file, this.#module.exports.load_perceptron);
   }
 
   act(acrobot) {

@@ -12,14 +12,16 @@ use acrobot::numpy::SeedSequence;
 use learners::{Budget, Env, Memory64, QLambda, training};
 use policy::Policy;
 
-type Learner = QLambda<'static, 6144, 52>;
+pub struct Training {
+    learner: QLambda<'static, 6144, 52>,
+    env: Env,
+}
 
 /// The longest data are perceptrons, of which one with 256 and 256 units has 273 KB.
 const BUFFER_LEN: usize = 1 << 19;
 
 thread_local! {
     static BUFFER: RefCell<[u8; BUFFER_LEN]> = const { RefCell::new([0; BUFFER_LEN]) };
-    static TRAINING: RefCell<Option<(Learner, Env)>> = const { RefCell::new(None) };
     static PERCEPTRON: Cell<Option<Policy<'static, 256>>> = const { Cell::new(None) };
 }
 
@@ -40,49 +42,45 @@ fn write(bytes: impl IntoIterator<Item = u8>) -> usize {
 /// Begins a training like that of `swing_up`. The seed is in the first `words` 32-bit words of the
 /// buffer, the lowest word first. An instance calls this once, because a learner keeps its memory.
 #[unsafe(no_mangle)]
-pub extern "C" fn begin(episodes: u32, words: usize) {
+pub extern "C" fn begin(episodes: u32, words: usize) -> Box<Training> {
     let seed: Vec<_> = BUFFER.with_borrow(|buffer| {
         buffer.as_chunks().0.iter().take(words).copied().map(u32::from_le_bytes).collect()
     });
     let memory = Box::leak(Box::new(Memory64::EMPTY));
     let learner = QLambda::new(Budget::Episodes(episodes), memory);
-    TRAINING.set(Some((learner, training(SeedSequence::from_words(&seed)))));
+    Box::new(Training { learner, env: training(SeedSequence::from_words(&seed)) })
 }
 
-/// Trains for one episode. Returns its return, or NaN if no training has begun.
+/// Trains for one episode. Returns its return.
 #[unsafe(no_mangle)]
-pub extern "C" fn train() -> f32 {
-    TRAINING.with_borrow_mut(|training| match training {
-        Some((learner, env)) => learner.learn(env),
-        None => f32::NAN,
-    })
+pub extern "C" fn train(training: &mut Training) -> f32 {
+    training.learner.learn(&mut training.env)
 }
 
 /// Writes the weights into the buffer, as `swing_up --save` does, and returns their length.
 #[unsafe(no_mangle)]
-pub extern "C" fn save() -> usize {
-    TRAINING
-        .with_borrow(|training| training.as_ref().map_or(0, |(learner, _)| write(learner.save())))
+pub extern "C" fn save(training: &Training) -> usize {
+    write(training.learner.save())
 }
 
 /// Loads weights from the first `len` bytes of the buffer. Returns 0, or, if they are rejected, the
 /// length of the reason in the buffer. Then the weights do not change.
 #[unsafe(no_mangle)]
-pub extern "C" fn load(len: usize) -> usize {
-    let loaded = TRAINING.with_borrow_mut(|training| {
-        let (learner, ..) = training.as_mut()?;
-        BUFFER.with_borrow(|buffer| learner.load(buffer.get(..len)?).err())
-    });
+pub extern "C" fn load(training: &mut Training, len: usize) -> usize {
+    let loaded = BUFFER.with_borrow(|buffer| training.learner.load(buffer.get(..len)?).err());
     loaded.map_or(0, |error| write(error.to_string().into_bytes()))
 }
 
 /// The learnt policy's action in a state.
 #[unsafe(no_mangle)]
-pub extern "C" fn act(theta1: f32, theta2: f32, dtheta1: f32, dtheta2: f32) -> u8 {
-    let state = State::from([theta1, theta2, dtheta1, dtheta2]);
-    TRAINING.with_borrow(|training| {
-        training.as_ref().map_or(1, |(learner, _)| learner.greedy(&state).into())
-    })
+pub extern "C" fn act(
+    training: &Training,
+    theta1: f32,
+    theta2: f32,
+    dtheta1: f32,
+    dtheta2: f32,
+) -> u8 {
+    training.learner.greedy(&State::from([theta1, theta2, dtheta1, dtheta2])).into()
 }
 
 /// Takes the policy in the first `len` bytes of the buffer. Returns as `load`. An instance calls
