@@ -172,26 +172,18 @@ impl TryFrom<acrobot_draws_t> for Draws<f32> {
     fn try_from(draws: acrobot_draws_t) -> Result<Self, Rejected> {
         // SAFETY: both are `repr(C)` and have so many draws.
         let draws: [acrobot_draw_t; NUMBERS] = unsafe { transmute(draws) };
-        let mut unknown = None;
-        let draws = draws.map(|draw| {
+        let mut params = Draws::FIXED;
+        for (to, draw) in params.numbers_mut().into_iter().zip(draws) {
             let acrobot_draw_t { kind, low, high, mean, standard_deviation: std } = draw;
-            match kind {
+            *to = match kind {
                 ACROBOT_DRAW_FIXED => Draw::Fixed,
                 ACROBOT_DRAW_AS_BEFORE => Draw::AsBefore,
                 ACROBOT_DRAW_UNIFORM => Draw::Uniform { low, high },
                 ACROBOT_DRAW_LOG_UNIFORM => Draw::LogUniform { low, high },
                 ACROBOT_DRAW_NORMAL => Draw::Normal { mean, std, low, high },
-                _ => {
-                    unknown = Some(kind);
-                    Draw::Fixed
-                }
-            }
-        });
-        if let Some(kind) = unknown {
-            return Err(Rejected::number("kind", kind.into(), "", "from 0 to 4"));
+                _ => return Err(Rejected::number("kind", kind.into(), "", "from 0 to 4")),
+            };
         }
-        let mut params = Draws::FIXED;
-        params.numbers_mut().into_iter().zip(draws).for_each(|(to, draw)| *to = draw);
         Ok(Self::new(params)?)
     }
 }
