@@ -217,15 +217,6 @@ static void expect_message(acrobot_status_t status, const char *message)
     }
 }
 
-static void set_draw(acrobot_draw_t *draw, int kind, float low, float high, float mean, float std)
-{
-    draw->kind = kind;
-    draw->low = low;
-    draw->high = high;
-    draw->mean = mean;
-    draw->standard_deviation = std;
-}
-
 #define params_rejects(message, set) \
     params = PARAMS; \
     set; \
@@ -240,8 +231,11 @@ static void set_draw(acrobot_draw_t *draw, int kind, float low, float high, floa
     set; \
     expect_message(acrobot_reset_within(acrobot, bounds.low, bounds.high, NULL, &error), message);
 #define draw_rejects(message, kind, mean, std, low, high) \
-    set_draw(&draws.mass2, ACROBOT_DRAW_##kind, low, high, mean, std); \
-    expect_message(acrobot_draw_params(acrobot, &draws, &error), message);
+    { \
+        const acrobot_draw_t draw = {ACROBOT_DRAW_##kind, low, high, mean, std}; \
+        draws.mass2 = draw; \
+        expect_message(acrobot_draw_params(acrobot, &draws, &error), message); \
+    }
 #define action_rejects(message, action) \
     REJECTED(UNKNOWN_ACTION, acrobot_step(acrobot, action, &step));
 
