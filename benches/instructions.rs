@@ -10,7 +10,7 @@
 
 use std::hint::black_box;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
+use acrobot::arithmetic::{Arithmetic, Micro, Reference};
 use acrobot::batch::SimdLevel;
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
@@ -33,7 +33,9 @@ fn limit(instructions: f64, acrobots: usize) -> LibraryBenchmarkConfig {
     config
 }
 
-fn alone<A: Arithmetic>() -> (TimeLimit<Acrobot<A>>, Vec<Action>) {
+type Alone<A> = (TimeLimit<Acrobot<A>>, Vec<Action>);
+
+fn alone<A: Arithmetic>() -> Alone<A> {
     let mut rng = Pcg64::new(0);
     let actions = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
     (TimeLimit::of(Acrobot::new(0)), actions)
@@ -45,8 +47,6 @@ fn batch<A: Arithmetic>(level: SimdLevel) -> Play<A> {
     play.batch.set_simd_level(level);
     play
 }
-
-type Alone<A> = (TimeLimit<Acrobot<A>>, Vec<Action>);
 
 #[inline(always)]
 fn play_alone<A: Arithmetic>((mut acrobot, actions): Alone<A>) -> Alone<A> {
@@ -64,11 +64,6 @@ fn play_batch<A: Arithmetic>(mut play: Play<A>, observe: bool) -> Play<A> {
         play.play(observe);
     }
     play
-}
-
-#[library_benchmark(setup = alone::<Host>)]
-fn host(alone: Alone<Host>) -> Alone<Host> {
-    play_alone(alone)
 }
 
 #[library_benchmark(config = limit(1888.0, 1), setup = alone::<Reference>)]
@@ -123,7 +118,6 @@ fn batch_reference(play: Play<Reference>) -> Play<Reference> {
 library_benchmark_group!(
     name = steps,
     benchmarks = [
-        host,
         reference,
         portable,
         fast,

@@ -35,8 +35,6 @@ fn main() {
     versus("fast_1024_own_params", Play::from(own), Play::<Fast>::new(1024));
     let swingup = Play::<Damped<Fast>, Swingup>::new(1024);
     versus("fast_1024_swingup", swingup, Play::<Fast>::new(1024));
-    let swingup = Play::<Damped<Portable>, Swingup>::new(1024);
-    versus("portable_1024_swingup", swingup, Play::<Portable>::new(1024));
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
     batch::<Portable>("portable", 1024, SimdLevel::widest());

@@ -198,14 +198,6 @@ def table(versions, rates):
         yield f"| {' | '.join([words, versions[name], *ratios])} |"
 
 
-def update(rows):
-    lines = PAGE.read_text().splitlines()
-    start = lines.index(HEAD)
-    end = next(i for i in range(start, len(lines)) if not lines[i].startswith("|"))
-    lines[start:end] = rows
-    PAGE.write_text("\n".join(lines) + "\n")
-
-
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--update", action="store_true", help="write the table into the page")
@@ -231,7 +223,11 @@ def main():
     rows = list(table(*measure(commands, rounds, seconds)))
     print("\n".join(rows))
     if options.update:
-        update(rows)
+        lines = PAGE.read_text().splitlines()
+        start = lines.index(HEAD)
+        end = next(i for i in range(start, len(lines)) if not lines[i].startswith("|"))
+        lines[start:end] = rows
+        PAGE.write_text("\n".join(lines) + "\n")
 
 
 main()

@@ -74,29 +74,21 @@ def stepped(env, actions):
     return actions.size
 
 
-def envpool_256():
-    return stepped(pool, actions[:20, :256])
-
-
-def single():
-    return stepped(env, actions[:, :10].reshape(-1, 1))
-
-
-def vector():
-    return stepped(envs, actions)
-
-
-def vector_float64():
-    return stepped(in_float64, actions)
-
-
 def rate(run):
     began = time.process_time()
     return run() / (time.process_time() - began)
 
 
-runs = dm_control, mujoco_rollout, envpool_256, mujoco_playground, single, vector, vector_float64
-best = np.max([[rate(run) for run in runs] for _ in range(5)], axis=0)
-for run, each in zip(runs, best, strict=True):
-    print(f"{run.__name__:17} {each:14,.0f} steps per second", end=", ")
+runs = {
+    "dm_control": dm_control,
+    "mujoco_rollout": mujoco_rollout,
+    "envpool_256": lambda: stepped(pool, actions[:20, :256]),
+    "mujoco_playground": mujoco_playground,
+    "single": lambda: stepped(env, actions[:, :10].reshape(-1, 1)),
+    "vector": lambda: stepped(envs, actions),
+    "vector_float64": lambda: stepped(in_float64, actions),
+}
+best = np.max([[rate(run) for run in runs.values()] for _ in range(5)], axis=0)
+for name, each in zip(runs, best, strict=True):
+    print(f"{name:17} {each:14,.0f} steps per second", end=", ")
     print(f"{each / best[0]:,.1f} times dm_control, {each / best[1]:,.1f} times mujoco.rollout")
