@@ -55,18 +55,18 @@ pub struct Returns {
 /// Plays a policy from the same initial states as every other policy with this seed.
 pub fn evaluate(
     seed: &SeedSequence,
-    episodes: impl IntoIterator<Item = u32>,
+    episodes: u32,
     mut policy: impl FnMut(&State<f32>) -> Action,
 ) -> Returns {
     let mut env = evaluation(seed);
-    let (mut n, mut sum, mut squares, mut misses) = (0.0, 0.0, 0.0, 0);
-    for _ in episodes {
+    let (mut sum, mut squares, mut misses) = (0.0, 0.0, 0);
+    for _ in 0..episodes {
         let (gained, reached) = play(&mut env, &mut policy);
-        n += 1.0;
         sum += f64::from(gained);
         squares += f64::from(gained * gained);
         misses += u32::from(!reached);
     }
+    let n = f64::from(episodes);
     let mean = sum / n;
     Returns { mean, sd: (squares / n - mean * mean).max(0.0).sqrt(), misses }
 }

@@ -21,7 +21,6 @@ use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, REWARD_THRESHOLD};
 use clap::Parser;
 use desktop::{Returns, animation, bang_bang, evaluate, load, write};
-use indicatif::{ProgressBar, ProgressStyle};
 use learners::{Budget, Memory, Memory16, Memory32, Memory64, QLambda, evaluation, play, training};
 
 /// Learns to swing up, compares the learnt policy with two simple ones, and draws a greedy episode.
@@ -59,7 +58,7 @@ impl Options {
 
 /// The episodes of an evaluation.
 const EVALUATION: u32 = 1000;
-/// The episodes of a running mean.
+/// The episodes of a mean while it learns.
 const LATEST: usize = 100;
 
 fn main() -> anyhow::Result<()> {
@@ -89,11 +88,11 @@ fn run<const S: usize, const T: usize, const N: usize>(
     }
 
     let seed = &options.seed;
-    let learnt = evaluate(seed, 0..EVALUATION, |state| learner.greedy(state));
-    // Gymnasium calls the task solved at this running mean.
-    let is_solved = |&n: &usize| running_mean(&returns[..n]) >= REWARD_THRESHOLD;
-    let solved_at = (LATEST..=returns.len()).find(is_solved);
-    let solved_at = solved_at.map_or("never".into(), |n| n.to_string());
+    let learnt = evaluate(seed, EVALUATION, |state| learner.greedy(state));
+    // Gymnasium calls the task solved at this mean.
+    let is_solved = |latest: &[f32]| latest.iter().sum::<f32>() / LATEST as f32 >= REWARD_THRESHOLD;
+    let solved_at = returns.windows(LATEST).position(is_solved);
+    let solved_at = solved_at.map_or("never".into(), |n| (n + LATEST).to_string());
     if options.quiet {
         let Returns { mean, sd, misses } = learnt;
         eprintln!("learnt in {seconds:.2} s");
@@ -107,8 +106,8 @@ fn run<const S: usize, const T: usize, const N: usize>(
         println!("{name:<18}  {mean:>19.2} ± {sd:<9.2}  {misses:>15}");
     };
     row("learnt", learnt);
-    row("torque against θ̇1", evaluate(seed, 0..EVALUATION, |state| bang_bang(state.dtheta1)));
-    row("random", evaluate(seed, 0..EVALUATION, |_| Action::sample(&mut actions)));
+    row("torque against θ̇1", evaluate(seed, EVALUATION, |state| bang_bang(state.dtheta1)));
+    row("random", evaluate(seed, EVALUATION, |_| Action::sample(&mut actions)));
     println!();
     draw(&learner, options)
 }
@@ -136,30 +135,13 @@ fn train<const S: usize, const T: usize>(
     options: &Options,
 ) -> Vec<f32> {
     let mut env = training(options.seed.clone());
-    let (Budget::Episodes(length) | Budget::Steps(length)) = options.budget();
-    let bar = if options.quiet { ProgressBar::hidden() } else { ProgressBar::new(length.into()) };
-    let style = ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} mean return {msg}");
-    bar.set_style(style.expect("a valid template"));
-
-    let (mut returns, mut steps, mut done) = (Vec::new(), 0, 0);
-    while done < length {
+    let (mut returns, mut steps) = (Vec::new(), 0);
+    while match options.budget() {
+        Budget::Episodes(all) => (returns.len() as u32) < all,
+        Budget::Steps(all) => steps < all,
+    } {
         returns.push(learner.learn(&mut env));
         steps += env.elapsed_steps();
-        done = match options.budget() {
-            Budget::Episodes(_) => returns.len() as u32,
-            Budget::Steps(_) => steps,
-        };
-        if !bar.is_hidden() {
-            bar.set_message(format!("{:.0}", running_mean(&returns)));
-        }
-        bar.set_position(done.min(length).into());
     }
-    bar.finish();
     returns
-}
-
-/// The mean of the latest returns. They are integers, so the sum is exact.
-fn running_mean(returns: &[f32]) -> f32 {
-    let latest = &returns[returns.len().saturating_sub(LATEST)..];
-    latest.iter().sum::<f32>() / latest.len() as f32
 }
