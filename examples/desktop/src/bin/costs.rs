@@ -43,8 +43,8 @@ fn main() -> anyhow::Result<()> {
         let (heights, torques) = swing_up(params, cost)?;
         let y = 18 + 16 * i;
         drawn += &format!("<text x='448' y='{y}' fill='{color}'>{name}</text>\n");
-        for points in [heights, torques] {
-            drawn += &format!("<polyline fill='none' stroke='{color}' points='{points}'/>\n");
+        for line in [heights, torques] {
+            drawn += &format!("<path fill='none' stroke='{color}' d='{line}'/>\n");
         }
     }
     let svg = format!(
@@ -61,22 +61,28 @@ fn main() -> anyhow::Result<()> {
     write(&options.out, svg)
 }
 
-/// The points of the tip's height and of the torque.
+/// The lines of the tip's height and of the torque.
 fn swing_up(params: Params<f32>, cost: Cost<f32>) -> anyhow::Result<(String, String)> {
     let mut planner = Planner::<Fast>::with_cost(params, LIMIT, cost)?;
     let steps = (SECONDS / DT) as usize;
     let plan = planner.search(State::HANGING, 256, &mut Pcg64::new(1), steps)?;
     let mut machine = Pendulum::<Fast>::hanging();
     machine.set_params(params)?;
-    let (mut heights, mut torques) = (String::new(), String::new());
+    let (mut heights, mut torques) = (Vec::new(), Vec::new());
     for i in 0..steps {
         let torque = saturate(planner.follow(&plan, i, machine.state()), LIMIT);
-        let x = 40.0 + 400.0 * i as f32 / steps as f32;
         if i % 3 == 0 {
-            heights += &format!("{x:.0},{:.0} ", 70.0 - 30.0 * machine.tip_height());
-            torques += &format!("{x:.0},{:.0} ", 190.0 - 8.0 * torque);
+            heights.push(70.0 - 30.0 * machine.tip_height());
+            torques.push(190.0 - 8.0 * torque);
         }
         machine.step(torque)?;
     }
-    Ok((heights, torques))
+    Ok((line(&heights), line(&torques)))
+}
+
+/// A path from one height to the next, 3 to the right each, in relative coordinates.
+fn line(heights: &[f32]) -> String {
+    let heights: Vec<i32> = heights.iter().map(|y| y.round() as i32).collect();
+    let steps: Vec<_> = heights.windows(2).map(|y| format!("3{:+}", y[1] - y[0])).collect();
+    format!("M40,{}l{}", heights[0], steps.join(","))
 }
