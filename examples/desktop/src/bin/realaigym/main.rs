@@ -17,8 +17,8 @@ use clap::{Parser, value_parser};
 use score::{Costs, Version, costs};
 use task::{HISTORY_SAC, MC_PILCO};
 
-/// Of the resets. The settings were chosen with the seeds 1 to 11.
-const SEEDS: std::ops::Range<u64> = 100..111;
+/// Of the resets. The settings were chosen with other seeds, below 200.
+const SEEDS: std::ops::Range<u64> = 200..211;
 
 /// Plays RealAIGym's simulated boards of the acrobot by planning.
 #[derive(Parser)]

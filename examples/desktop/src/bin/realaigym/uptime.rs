@@ -1,4 +1,4 @@
-//! The board of ICRA 2025: 60 s with resets at random, of which the time above the line counts.
+//! The board of ICRA 2025: 60 s with resets at random. The score is the part above the line.
 
 use std::array::from_fn;
 use std::time::{Duration, Instant};
