@@ -1,0 +1,158 @@
+//! Slices of work: each improves the plan that the controller follows, or tries another one.
+
+use core::iter::{once, repeat};
+
+use acrobot::control::{ControlError, Knot, Planner, difference};
+use acrobot::numpy::Pcg64;
+use acrobot::physics::{Pendulum, saturate};
+use acrobot::{Params, State};
+
+use crate::controller::{Arithmetic, Controller, Settings};
+
+/// The part of the motor's torque that plans use. The rest corrects deviations.
+const PLANNED: f32 = 0.9;
+/// The iterations of a slice.
+const ITERATIONS: u32 = 4;
+/// After so many slices, one takes the estimated parameters.
+const SLICES: u32 = 20;
+/// A plan that ends farther from upright is a bad one, rad.
+const FAR: f32 = 0.5;
+
+#[derive(Clone, Copy, Debug)]
+enum Work {
+    /// To compute the model's regulator, of which plans need what a deviation at the end costs.
+    Model,
+    Plan,
+    /// A plan with its cost: just done, or until its first decision is due.
+    Done(f32),
+    Due(f32),
+}
+
+/// What the main loop does. It needs about as much memory as two plans, and several KB of stack.
+#[derive(Clone, Debug)]
+pub struct Replanner<const N: usize> {
+    limit: f32,
+    /// Seconds of a tick, as a part of a decision's.
+    ticks: f32,
+    planner: Planner<Arithmetic>,
+    /// The planner's parameters, and those for the next one.
+    params: Params<f32>,
+    estimated: Params<f32>,
+    rng: Pcg64,
+    work: Work,
+    slices: u32,
+    /// The plan: its first state, the decision with which it begins, and whether it is another one.
+    plan: [Knot<f32>; N],
+    start: State<f32>,
+    begin: u32,
+    is_new: bool,
+    /// Decisions before the work began, and how many later the plan begins.
+    before: u32,
+    ahead: u32,
+}
+
+impl<const N: usize> Replanner<N> {
+    /// A replanner whose first guesses follow from a seed.
+    ///
+    /// # Errors
+    ///
+    /// The parameters have no regulator.
+    pub fn new(settings: Settings, seed: u64) -> Result<Self, ControlError> {
+        let ticks = settings.ticks as f32;
+        let params = of_decisions(&settings.params, ticks);
+        Ok(Self {
+            limit: settings.limit,
+            ticks,
+            planner: Planner::new(params, PLANNED * settings.limit)?,
+            params,
+            estimated: settings.params,
+            rng: Pcg64::new(seed),
+            work: Work::Model,
+            slices: 0,
+            plan: [Knot::EMPTY; N],
+            start: State::HANGING,
+            begin: 0,
+            is_new: false,
+            before: 0,
+            ahead: 1,
+        })
+    }
+
+    /// Gives the controller the plan, once its first decision is due, and takes the next work. No
+    /// tick may come between, so this is short: it copies two plans.
+    pub fn exchange(&mut self, controller: &mut Controller<N>) {
+        let now = controller.decisions;
+        if let Work::Done(cost) = self.work {
+            let took = now.wrapping_sub(self.before);
+            self.ahead = (took + 1).max(self.ahead - 1).min(N as u32 / 2);
+            self.work = Work::Due(cost);
+        }
+        if let Work::Due(cost) = self.work {
+            let late = now.wrapping_sub(self.begin).cast_signed();
+            if late < 0 {
+                return;
+            }
+            if cost.is_finite() && (!self.is_new || cost < controller.cost) {
+                controller.plan = self.plan;
+                controller.next = late as usize;
+                controller.cost = cost;
+            }
+        }
+        self.slices += 1;
+        if self.slices == SLICES {
+            self.slices = 0;
+            self.estimated = *controller.params();
+            self.work = Work::Model;
+            return;
+        }
+        self.work = Work::Plan;
+        self.before = now;
+        self.start = controller.state;
+        let rest = controller.plan.get(controller.next..).unwrap_or_default();
+        let steps = once(&controller.last).chain(rest).chain(repeat(&Knot::EMPTY));
+        self.plan.iter_mut().zip(steps).for_each(|(place, step)| *place = *step);
+        let end = controller.plan.last().map_or(State::HANGING, |knot| knot.state);
+        let [lean1, lean2, ..] = difference(end, State::UPRIGHT);
+        // In turn, so that the plan stays up to date.
+        self.is_new = !self.is_new && lean1.abs().max(lean2.abs()) > FAR;
+    }
+
+    /// A slice: computes for some milliseconds to tens of them. Without an
+    /// [exchange](Self::exchange) before it does nothing.
+    pub fn work(&mut self) {
+        match self.work {
+            // Parameters that no plan can have keep the model before.
+            Work::Model => {
+                let params = of_decisions(&self.estimated, self.ticks);
+                if let Ok(planner) = Planner::new(params, PLANNED * self.limit) {
+                    (self.planner, self.params) = (planner, params);
+                }
+            }
+            Work::Plan => self.work = Work::Done(self.improve().unwrap_or(f32::INFINITY)),
+            Work::Done(_) | Work::Due(_) => {}
+        }
+    }
+
+    /// Returns the cost of the improved plan.
+    fn improve(&mut self) -> Result<f32, ControlError> {
+        // What the controller does meanwhile. The first step is the one that it takes now.
+        let mut model = Pendulum::<Arithmetic>::new(self.params, self.start)?;
+        let ahead = self.ahead as usize;
+        for step in self.plan.iter().take(ahead) {
+            model.step(saturate(step.follow(model.state()), self.limit))?;
+        }
+        self.start = model.state();
+        self.begin = self.before.wrapping_add(self.ahead).wrapping_sub(1);
+        self.plan.rotate_left(ahead);
+        self.plan.iter_mut().rev().take(ahead).for_each(|step| *step = Knot::EMPTY);
+        if self.is_new {
+            self.planner.guess(self.start, &mut self.rng, &mut self.plan)?;
+        }
+        self.planner.improve(self.start, ITERATIONS, &mut self.plan)
+    }
+}
+
+/// Parameters whose steps are those of decisions.
+fn of_decisions(params: &Params<f32>, ticks: f32) -> Params<f32> {
+    Params { dt: params.dt * ticks, ..*params }
+}
