@@ -10,69 +10,42 @@ use acrobot::{Error, Fast, Params, State};
 /// The arithmetic of the estimator and of plans.
 pub(crate) type Arithmetic = Damped<Fast>;
 
-/// The standard deviation of an angle, in counts, and of the torque, as a part of the largest. The
-/// estimator changes the latter by what it sees.
+/// Standard deviations: of an angle, in counts, and of the torque, as a part of the largest.
 const ANGLE: f32 = 0.29;
 const TORQUE: f32 = 0.01;
-/// The standard deviations of the parameters: of masses and inertias, as a part of them, and of
-/// both frictions, as a part of the largest torque.
+/// Those of masses and inertias, as a part of them, and of frictions, as a part of the torque.
 const DOUBT: f32 = 0.02;
 const VISCOUS: f32 = 1.0 / 600.0;
 const DRY: f32 = 1.0 / 60.0;
 
-/// A machine, and its controller's times.
+/// A machine.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    pub(crate) params: Params<f32>,
-    pub(crate) limit: f32,
-    counts: [u16; 2],
-    /// Ticks from a decision to the next: 5 by default, 10 ms if a tick has 2 ms.
+    /// Its parameters, whose `dt` is the time from a tick to the next.
+    pub params: Params<f32>,
+    /// The motor's largest torque, N m.
+    pub limit: f32,
+    /// The counts of each encoder for a turn.
+    pub counts: [u16; 2],
+    /// Ticks from a decision to the next, such as 5 of 2 ms.
     pub ticks: u32,
 }
 
 impl Settings {
-    /// A machine with these parameters, whose `dt` is the time between two ticks, a motor's largest
-    /// torque, N m, and the encoders' counts for a turn.
-    ///
-    /// # Errors
-    ///
-    /// A parameter is out of range, or the torque is not above 0, or an encoder does not count.
-    pub fn new(params: Params<f32>, limit: f32, counts: [u16; 2]) -> Result<Self, Error> {
-        params.validate()?;
-        let above_zero = |name, value: f32, unit| match value > 0.0 && value.is_finite() {
-            true => Ok(()),
-            false => {
-                let rule = "finite and above 0";
-                Err(Error::OutOfRange { name, value: value.into(), unit, rule })
-            }
-        };
-        above_zero("limit", limit, "N m")?;
-        for count in counts {
-            above_zero("counts", count.into(), "counts for a turn")?;
-        }
-        Ok(Self { params, limit, counts, ticks: 5 })
-    }
-
     /// How wrong the parameters may be.
     fn deviations(&self) -> Params<f32> {
-        let given = &self.params;
-        let about_joint = |mass: f32, center: f32, inertia: f32| {
-            let inertia = inertia + mass * (center * center);
-            [DOUBT * mass, DOUBT * inertia]
-        };
-        let [mass1, inertia1] = about_joint(given.mass1, given.center_of_mass1, given.inertia1);
-        let [mass2, inertia2] = about_joint(given.mass2, given.center_of_mass2, given.inertia2);
-        let both = |deviation| Joints { joint1: deviation, joint2: deviation };
+        let Params { mass1, mass2, center_of_mass1: lc1, center_of_mass2: lc2, .. } = self.params;
+        let both = |part| Joints { joint1: part * self.limit, joint2: part * self.limit };
         Params {
-            mass1,
-            mass2,
-            inertia1,
-            inertia2,
+            mass1: DOUBT * mass1,
+            mass2: DOUBT * mass2,
+            inertia1: DOUBT * (self.params.inertia1 + mass1 * (lc1 * lc1)),
+            inertia2: DOUBT * (self.params.inertia2 + mass2 * (lc2 * lc2)),
             length1: 0.0,
-            friction: both(VISCOUS * self.limit),
-            coulomb: both(DRY * self.limit),
+            friction: both(VISCOUS),
+            coulomb: both(DRY),
             rotor: 0.0,
-            ..*given
+            ..self.params
         }
     }
 }
@@ -100,11 +73,22 @@ impl<const N: usize> Controller<N> {
     ///
     /// # Errors
     ///
-    /// The parameters have no estimator.
+    /// A parameter is out of range, the largest torque is not above 0, or an encoder does not count.
     pub fn new(settings: Settings) -> Result<Self, Error> {
-        let counts = settings.counts[0].min(settings.counts[1]);
-        let noise =
-            Noise { angle: ANGLE * TAU / f32::from(counts), torque: TORQUE * settings.limit };
+        let [counts1, counts2] = settings.counts.map(f32::from);
+        settings.params.validate()?;
+        for (name, value, unit) in [
+            ("limit", settings.limit, "N m"),
+            ("counts", counts1, "for a turn"),
+            ("counts", counts2, "for a turn"),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                let (value, rule) = (value.into(), "finite and above 0");
+                return Err(Error::OutOfRange { name, value, unit, rule });
+            }
+        }
+        let angle = ANGLE * TAU / counts1.min(counts2);
+        let noise = Noise { angle, torque: TORQUE * settings.limit };
         let deviations = settings.deviations();
         Ok(Self {
             settings,

@@ -16,7 +16,8 @@
 //! use mpc::{Controller, Machine, Replanner, Settings};
 //!
 //! let mut machine = Machine::<Damped<Portable>>::new(1)?; // stands for encoders and motor
-//! let settings = Settings::new(machine.params().cast(), 6.0, [4096, 4096])?;
+//! let params = machine.params().cast();
+//! let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
 //! let mut controller = Controller::<100>::new(settings)?; // plans of 100 decisions
 //! let mut replanner = Replanner::new(settings, 1)?;
 //! for tick in 0..2000 {

@@ -41,8 +41,8 @@ struct Options {
     /// The first seed.
     #[arg(long, default_value_t = 0)]
     first: u64,
-    /// Ticks of 2 ms that a slice of planning takes, such as 15 on a Cortex-M4F.
-    #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..))]
+    /// Ticks of 2 ms that a slice of planning takes, such as 12 to 20 on an STM32F4.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     slice: u32,
 }
 
@@ -83,7 +83,7 @@ fn identified(truth: Params, seed: u64) -> Result<Params, ControlError> {
 fn control(seed: u64, slice: u32, model: Model) -> Result<Motion, ControlError> {
     let mut machine = Machine::new(seed)?;
     let params = model(machine.params(), seed)?.cast();
-    let settings = Settings::new(params, 6.0, [4096, 4096])?;
+    let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
     let mut controller = Controller::<100>::new(settings)?;
     let mut replanner = Replanner::new(settings, seed)?;
     let mut motion = Motion::default();
