@@ -55,9 +55,8 @@ impl Settings {
 pub struct Controller<const N: usize> {
     settings: Settings,
     pub(crate) estimator: Estimator<Arithmetic, 10>,
-    /// The plan, what it costs, and its next step.
+    /// The plan, and its next step.
     pub(crate) plan: [Knot<f32>; N],
-    pub(crate) cost: f32,
     pub(crate) next: usize,
     /// The step of the last decision, and the state then.
     pub(crate) last: Knot<f32>,
@@ -94,7 +93,6 @@ impl<const N: usize> Controller<N> {
             settings,
             estimator: Estimator::with_params(settings.params, deviations, noise)?,
             plan: [Knot::EMPTY; N],
-            cost: f32::INFINITY,
             next: 0,
             last: Knot::EMPTY,
             state: State::HANGING,

@@ -19,7 +19,7 @@
 //! let params = machine.params().cast();
 //! let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
 //! let mut controller = Controller::<100>::new(settings)?; // plans of 100 decisions
-//! let mut replanner = Replanner::new(settings, 1)?;
+//! let mut replanner = Replanner::new(settings)?;
 //! for tick in 0..2000 {
 //!     let torque = controller.tick(machine.counts())?;
 //!     machine.step(torque)?;

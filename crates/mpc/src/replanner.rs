@@ -1,9 +1,8 @@
-//! Slices of work: each improves the plan that the controller follows, or tries another one.
+//! Slices of work: each improves the plan that the controller follows.
 
 use core::iter::{once, repeat};
 
-use acrobot::control::{ControlError, Knot, Planner, difference};
-use acrobot::numpy::Pcg64;
+use acrobot::control::{ControlError, Knot, Planner};
 use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Params, State};
 
@@ -15,17 +14,18 @@ const PLANNED: f32 = 0.9;
 const ITERATIONS: u32 = 4;
 /// After so many slices, one takes the estimated parameters.
 const SLICES: u32 = 20;
-/// A plan that ends farther from upright is a bad one, rad.
-const FAR: f32 = 0.5;
+/// The first torque of a step, as a part of the largest: with none, a plan from hanging at rest has
+/// no slope.
+const NUDGE: f32 = 0.01;
 
 #[derive(Clone, Copy, Debug)]
 enum Work {
     /// To compute the model's regulator, of which plans need what a deviation at the end costs.
     Model,
     Plan,
-    /// A plan with its cost: just done, or until its first decision is due.
-    Done(f32),
-    Due(f32),
+    /// Whether there is a plan: just done, or until its first decision is due.
+    Done(bool),
+    Due(bool),
 }
 
 /// What the main loop does. It needs about as much memory as two plans, and several KB of stack.
@@ -38,26 +38,24 @@ pub struct Replanner<const N: usize> {
     /// The planner's parameters, and those for the next one.
     params: Params<f32>,
     estimated: Params<f32>,
-    rng: Pcg64,
     work: Work,
     slices: u32,
-    /// The plan: its first state, the decision with which it begins, and whether it is another one.
+    /// The plan, its first state, and the decision with which it begins.
     plan: [Knot<f32>; N],
     start: State<f32>,
     begin: u32,
-    is_new: bool,
     /// Decisions before the work began, and how many later the plan begins.
     before: u32,
     ahead: u32,
 }
 
 impl<const N: usize> Replanner<N> {
-    /// A replanner whose first guesses follow from a seed.
+    /// A replanner without a plan.
     ///
     /// # Errors
     ///
     /// The parameters have no regulator.
-    pub fn new(settings: Settings, seed: u64) -> Result<Self, ControlError> {
+    pub fn new(settings: Settings) -> Result<Self, ControlError> {
         let ticks = settings.ticks as f32;
         let params = of_decisions(&settings.params, ticks);
         Ok(Self {
@@ -66,13 +64,11 @@ impl<const N: usize> Replanner<N> {
             planner: Planner::new(params, PLANNED * settings.limit)?,
             params,
             estimated: settings.params,
-            rng: Pcg64::new(seed),
             work: Work::Model,
             slices: 0,
             plan: [Knot::EMPTY; N],
             start: State::HANGING,
             begin: 0,
-            is_new: false,
             before: 0,
             ahead: 1,
         })
@@ -82,20 +78,19 @@ impl<const N: usize> Replanner<N> {
     /// tick may come between, so this is short: it copies two plans.
     pub fn exchange(&mut self, controller: &mut Controller<N>) {
         let now = controller.decisions;
-        if let Work::Done(cost) = self.work {
+        if let Work::Done(is_good) = self.work {
             let took = now.wrapping_sub(self.before);
-            self.ahead = (took + 1).max(self.ahead - 1).min(N as u32 / 2);
-            self.work = Work::Due(cost);
+            self.ahead = (took + 1).max(self.ahead.saturating_sub(1)).min(N as u32 / 2);
+            self.work = Work::Due(is_good);
         }
-        if let Work::Due(cost) = self.work {
+        if let Work::Due(is_good) = self.work {
             let late = now.wrapping_sub(self.begin).cast_signed();
             if late < 0 {
                 return;
             }
-            if cost.is_finite() && (!self.is_new || cost < controller.cost) {
+            if is_good {
                 controller.plan = self.plan;
                 controller.next = late as usize;
-                controller.cost = cost;
             }
         }
         self.slices += 1;
@@ -108,13 +103,10 @@ impl<const N: usize> Replanner<N> {
         self.work = Work::Plan;
         self.before = now;
         self.start = controller.state;
+        let nudge = Knot::open(NUDGE * self.limit);
         let rest = controller.plan.get(controller.next..).unwrap_or_default();
-        let steps = once(&controller.last).chain(rest).chain(repeat(&Knot::EMPTY));
+        let steps = once(&controller.last).chain(rest).chain(repeat(&nudge));
         self.plan.iter_mut().zip(steps).for_each(|(place, step)| *place = *step);
-        let end = controller.plan.last().map_or(State::HANGING, |knot| knot.state);
-        let [lean1, lean2, ..] = difference(end, State::UPRIGHT);
-        // In turn, so that the plan stays up to date.
-        self.is_new = !self.is_new && lean1.abs().max(lean2.abs()) > FAR;
     }
 
     /// A slice: computes for some milliseconds to tens of them. Without an
@@ -128,13 +120,12 @@ impl<const N: usize> Replanner<N> {
                     (self.planner, self.params) = (planner, params);
                 }
             }
-            Work::Plan => self.work = Work::Done(self.improve().unwrap_or(f32::INFINITY)),
+            Work::Plan => self.work = Work::Done(self.improve().is_ok()),
             Work::Done(_) | Work::Due(_) => {}
         }
     }
 
-    /// Returns the cost of the improved plan.
-    fn improve(&mut self) -> Result<f32, ControlError> {
+    fn improve(&mut self) -> Result<(), ControlError> {
         // What the controller does meanwhile. The first step is the one that it takes now.
         let mut model = Pendulum::<Arithmetic>::new(self.params, self.start)?;
         let ahead = self.ahead as usize;
@@ -143,12 +134,10 @@ impl<const N: usize> Replanner<N> {
         }
         self.start = model.state();
         self.begin = self.before.wrapping_add(self.ahead).wrapping_sub(1);
+        let nudge = Knot::open(NUDGE * self.limit);
         self.plan.rotate_left(ahead);
-        self.plan.iter_mut().rev().take(ahead).for_each(|step| *step = Knot::EMPTY);
-        if self.is_new {
-            self.planner.guess(self.start, &mut self.rng, &mut self.plan)?;
-        }
-        self.planner.improve(self.start, ITERATIONS, &mut self.plan)
+        self.plan.iter_mut().rev().take(ahead).for_each(|step| *step = nudge);
+        self.planner.improve(self.start, ITERATIONS, &mut self.plan).map(drop)
     }
 }
 

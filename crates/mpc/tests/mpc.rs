@@ -21,7 +21,7 @@ fn control(
     let mut machine = Machine::<Damped<Portable>>::new(seed)?;
     let settings = settings(model(machine.params()));
     let mut controller = Controller::new(settings)?;
-    let mut replanner = Replanner::new(settings, seed)?;
+    let mut replanner = Replanner::new(settings)?;
     let mut leans = [0.0_f64; 2];
     for lean in &mut leans {
         for tick in 0..2500 {
@@ -76,6 +76,21 @@ fn without_plans_there_is_no_torque() {
     for counts in [[0, 0], [i32::MIN, i32::MAX], [4096, -4096]] {
         assert_eq!(controller.tick(counts).unwrap(), 0.0);
     }
+}
+
+/// A plan without torques from exactly hanging has no slope.
+#[test]
+fn zeroed_encoders_do_not_stop_it() {
+    let settings = settings(Machine::<Damped<Portable>>::new(1).unwrap().params());
+    let mut controller = Controller::<100>::new(settings).unwrap();
+    let mut replanner = Replanner::new(settings).unwrap();
+    let mut most = 0.0_f32;
+    for _ in 0..100 {
+        most = most.max(controller.tick([0, 0]).unwrap().abs());
+        replanner.exchange(&mut controller);
+        replanner.work();
+    }
+    assert!(most > 2.0, "{most} N m");
 }
 
 #[test]

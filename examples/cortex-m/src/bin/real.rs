@@ -47,7 +47,7 @@ fn start() -> Result<Replanner<100>, ControlError> {
     let controller = Controller::new(settings)?;
     let real = Real { machine, controller, ticks: 0, upright: [0; 2], waits: 0, takes: 0 };
     critical_section::with(|cs| REAL.replace(cs, Some(real)));
-    Replanner::new(settings, 1)
+    Replanner::new(settings)
 }
 
 #[entry]

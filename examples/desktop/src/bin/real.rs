@@ -85,7 +85,7 @@ fn control(seed: u64, slice: u32, model: Model) -> Result<Motion, ControlError> 
     let params = model(machine.params(), seed)?.cast();
     let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
     let mut controller = Controller::<100>::new(settings)?;
-    let mut replanner = Replanner::new(settings, seed)?;
+    let mut replanner = Replanner::new(settings)?;
     let mut motion = Motion::default();
     for (time, push) in motion.iter_mut().zip(PUSHES) {
         let mut upright = 0;
