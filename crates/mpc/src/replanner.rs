@@ -14,9 +14,6 @@ const PLANNED: f32 = 0.9;
 const ITERATIONS: u32 = 4;
 /// After so many slices, one takes the estimated parameters.
 const SLICES: u32 = 20;
-/// The first torque of a step, as a part of the largest: with none, a plan from hanging at rest has
-/// no slope.
-const NUDGE: f32 = 0.01;
 
 #[derive(Clone, Copy, Debug)]
 enum Work {
@@ -103,9 +100,8 @@ impl<const N: usize> Replanner<N> {
         self.work = Work::Plan;
         self.before = now;
         self.start = controller.state;
-        let nudge = Knot::open(NUDGE * self.limit);
         let rest = controller.plan.get(controller.next..).unwrap_or_default();
-        let steps = once(&controller.last).chain(rest).chain(repeat(&nudge));
+        let steps = once(&controller.last).chain(rest).chain(repeat(&Knot::EMPTY));
         self.plan.iter_mut().zip(steps).for_each(|(place, step)| *place = *step);
     }
 
@@ -134,9 +130,8 @@ impl<const N: usize> Replanner<N> {
         }
         self.start = model.state();
         self.begin = self.before.wrapping_add(self.ahead).wrapping_sub(1);
-        let nudge = Knot::open(NUDGE * self.limit);
         self.plan.rotate_left(ahead);
-        self.plan.iter_mut().rev().take(ahead).for_each(|step| *step = nudge);
+        self.plan.iter_mut().rev().take(ahead).for_each(|step| *step = Knot::EMPTY);
         self.planner.improve(self.start, ITERATIONS, &mut self.plan).map(drop)
     }
 }

@@ -78,7 +78,7 @@ fn without_plans_there_is_no_torque() {
     }
 }
 
-/// A plan without torques from exactly hanging has no slope.
+/// From exactly hanging left and right are alike.
 #[test]
 fn zeroed_encoders_do_not_stop_it() {
     let settings = settings(Machine::<Damped<Portable>>::new(1).unwrap().params());
