@@ -48,6 +48,7 @@ pages! {
     equations "equations.md",
     benchmarks "benchmarks.md",
     learning "learning.md",
+    real "real.md",
     swingup "swingup.md",
     optimum "optimum.md",
 }

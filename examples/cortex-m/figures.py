@@ -96,7 +96,6 @@ REAL = {
     "upright_ms": "upright from hanging, after ms",
     "again_ms": "upright after a push of 6 rad/s, after ms",
     "tick_instructions": "instructions of a tick, most",
-    "waits_instructions": "instructions that a tick waits while plans are copied, most",
     "slices": "slices of planning in 10 s",
     "slice_ticks": "ticks during a slice, most",
     "flash_bytes": "flash of the whole firmware, bytes",

