@@ -110,7 +110,8 @@ impl<const N: usize> Controller<N> {
     pub fn tick(&mut self, counts: [i32; 2]) -> Result<f32, ControlError> {
         let [count1, count2] = counts;
         let [turn1, turn2] = self.settings.counts.map(i32::from);
-        let angle = |count: i32, turn: i32| (count % turn) as f32 / turn as f32 * TAU;
+        let angle =
+            |count: i32, turn: i32| count.checked_rem(turn).unwrap_or(0) as f32 / turn as f32 * TAU;
         self.estimator.measure([angle(count1, turn1), angle(count2, turn2)])?;
         if self.ticks == 0 {
             self.ticks = self.settings.ticks;

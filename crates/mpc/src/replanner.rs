@@ -4,7 +4,7 @@ use core::iter::{once, repeat};
 
 use acrobot::control::{ControlError, Knot, Planner};
 use acrobot::physics::{Pendulum, saturate};
-use acrobot::{Params, State};
+use acrobot::{Error, Params, State};
 
 use crate::controller::{Arithmetic, Controller, Settings};
 
@@ -72,7 +72,7 @@ impl<const N: usize> Replanner<N> {
     }
 
     /// Gives the controller the plan, once its first decision is due, and takes the next work. No
-    /// tick may come between, so this is short: it copies two plans.
+    /// tick may come between, so this is short: it copies two plans, and simulates a few decisions.
     pub fn exchange(&mut self, controller: &mut Controller<N>) {
         let now = controller.decisions;
         if let Work::Done(is_good) = self.work {
@@ -97,12 +97,27 @@ impl<const N: usize> Replanner<N> {
             self.work = Work::Model;
             return;
         }
-        self.work = Work::Plan;
         self.before = now;
-        self.start = controller.state;
+        self.work = match self.look(controller) {
+            Ok(()) => Work::Plan,
+            Err(_) => Work::Done(false),
+        };
+    }
+
+    /// Simulates what the controller does during the work, and copies the plan after that.
+    fn look(&mut self, controller: &Controller<N>) -> Result<(), Error> {
         let rest = controller.plan.get(controller.next..).unwrap_or_default();
+        // The first step is the one that it takes now.
         let steps = once(&controller.last).chain(rest).chain(repeat(&Knot::EMPTY));
-        self.plan.iter_mut().zip(steps).for_each(|(place, step)| *place = *step);
+        let mut model = Pendulum::<Arithmetic>::new(self.params, controller.state)?;
+        let ahead = self.ahead as usize;
+        for step in steps.clone().take(ahead) {
+            model.step(saturate(step.follow(model.state()), self.limit))?;
+        }
+        self.start = model.state();
+        self.begin = self.before.wrapping_add(self.ahead).wrapping_sub(1);
+        self.plan.iter_mut().zip(steps.skip(ahead)).for_each(|(place, step)| *place = *step);
+        Ok(())
     }
 
     /// A slice: computes for some milliseconds to tens of them. Without an
@@ -116,23 +131,12 @@ impl<const N: usize> Replanner<N> {
                     (self.planner, self.params) = (planner, params);
                 }
             }
-            Work::Plan => self.work = Work::Done(self.improve().is_ok()),
+            Work::Plan => {
+                let improved = self.planner.improve(self.start, ITERATIONS, &mut self.plan);
+                self.work = Work::Done(improved.is_ok());
+            }
             Work::Done(_) | Work::Due(_) => {}
         }
-    }
-
-    fn improve(&mut self) -> Result<(), ControlError> {
-        // What the controller does meanwhile. The first step is the one that it takes now.
-        let mut model = Pendulum::<Arithmetic>::new(self.params, self.start)?;
-        let ahead = self.ahead as usize;
-        for step in self.plan.iter().take(ahead) {
-            model.step(saturate(step.follow(model.state()), self.limit))?;
-        }
-        self.start = model.state();
-        self.begin = self.before.wrapping_add(self.ahead).wrapping_sub(1);
-        self.plan.rotate_left(ahead);
-        self.plan.iter_mut().rev().take(ahead).for_each(|step| *step = Knot::EMPTY);
-        self.planner.improve(self.start, ITERATIONS, &mut self.plan).map(drop)
     }
 }
 
