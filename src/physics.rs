@@ -38,7 +38,7 @@ mod step;
 
 pub(crate) use arithmetic::{check_params, default_model, model};
 pub use bounds::{saturate, wrap};
-pub(crate) use friction::{dry_friction, friction};
+pub(crate) use friction::{coulomb_friction, friction};
 pub(crate) use geometry::{directions, positions};
 pub(crate) use model::{Constants, Defaults, Given, Model, Modeled};
 pub(crate) use params::FIELDS;

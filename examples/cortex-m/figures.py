@@ -84,6 +84,8 @@ CONTROL = {
     "torque": "`difference` and `Lqr::torque`",
     "inverse_dynamics": "`inverse_dynamics`",
     "velocities": "`velocities`",
+    "estimator": "`Estimator` with friction, a measurement and a step",
+    "estimator_params": "the same with 10 parameters",
 }
 ADDITIONS = {
     "message": "flash of `set_params`, and `message` of its error",
@@ -201,6 +203,14 @@ def measure_firmware(name, column):
     }
 
 
+def measure_balance():
+    return measure_firmware("balance", "10_Nm")
+
+
+def measure_real():
+    return measure_firmware("real", "real")
+
+
 def measure_additions():
     def size(name):
         return flash(image("minimal", minimal=name, features="serde" if name == "serde" else ""))
@@ -215,9 +225,9 @@ Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", ARITHMETICS, ROWS, measure_m4f),
     "additions": Table(ADDED, {"fast": "bytes"}, ADDITIONS, measure_additions),
-    "balance": Table("largest torque", LIMITS, BALANCE, lambda: measure_firmware("balance", "10_Nm")),
+    "balance": Table("largest torque", LIMITS, BALANCE, measure_balance),
     "control": Table(UPRIGHT, CONTROLLED, CONTROL, lambda: printed("bench")),
-    "real": Table("a real acrobot", {"real": "6 N m"}, REAL, lambda: measure_firmware("real", "real")),
+    "real": Table("a real acrobot", {"real": "6 N m"}, REAL, measure_real),
     "cores": Table("instructions per step", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(steps)),
     "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: of_cores(stacks)),
     "sizes": Table("bytes of flash", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(sizes)),

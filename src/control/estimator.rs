@@ -4,16 +4,19 @@
 //! What the model does not say acts as a torque of the motor, whose variance follows the errors of
 //! the predicted angles. After a push the velocities are in doubt, but not the parameters.
 
+use core::array::from_fn;
+
 use super::error::ControlError;
-use super::linearize::{LinearModel, MassMatrix};
-use super::linearize_step::linearize_step;
-use super::matrix::{Matrix, add_scaled, apply, diagonal, transpose};
+use super::linearize::{LinearModel, MassMatrix, linearize};
+use super::matrix::{
+    Matrix, add_outer, add_scaled, apply, diagonal, dot, spread, symmetrize, transpose,
+};
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::Real;
 use crate::math::sealed::Sealed as _;
 use crate::physics::{
-    Model, Params, Pendulum, State, directions, dry_friction, saturate, sin_cos, wrap,
+    Params, Pendulum, State, coulomb_friction, directions, plus_scaled, saturate, wrap,
 };
 
 /// The standard deviation of the velocities at first, rad/s.
@@ -24,8 +27,9 @@ const PUSH: f64 = 6.0;
 const DRIFT: f64 = 3e-5;
 /// The variance of the torque is between these parts of the given one. At first it is the most, so
 /// that wrong parameters do not count as motion.
-const LEAST_NOISE: f64 = 1e-2;
-const MOST_NOISE: f64 = 1e4;
+const OF_TORQUE: [f64; 2] = [1e-2, 1e4];
+/// What the model does not say in a step, and rounding: standard deviations, rad and rad/s.
+const IN_A_STEP: [f64; 2] = [1e-6, 1e-3];
 /// An estimated parameter differs from the given one by at most so many deviations.
 const MOST: f64 = 4.0;
 
@@ -40,7 +44,8 @@ pub struct Noise<S = f64> {
     pub torque: S,
 }
 
-/// Estimates the state of a machine, and `K` of its parameters: 0 or [`PARAMETERS`](Self::PARAMETERS).
+/// Estimates the state of a machine, and `K` of its parameters: none, or
+/// [`PARAMETERS`](Self::PARAMETERS).
 ///
 /// In each `dt` of the parameters call [`measure`](Self::measure), decide, and call
 /// [`step`](Self::step).
@@ -63,7 +68,6 @@ pub struct Noise<S = f64> {
 #[derive(Clone, Debug)]
 pub struct Estimator<A: Arithmetic, const K: usize = 0> {
     model: Pendulum<A>,
-    given: Params<A::Scalar>,
     noise: Noise<A::Scalar>,
     /// The variance of the torque, (N m)².
     torque: A::Scalar,
@@ -75,8 +79,10 @@ pub struct Estimator<A: Arithmetic, const K: usize = 0> {
 /// What is known of a parameter.
 #[derive(Clone, Copy, Debug)]
 struct Parameter<S, const K: usize> {
-    /// The standard deviation at first.
-    deviation: S,
+    /// The smallest and the largest number.
+    limits: [S; 2],
+    /// The variance that each step adds.
+    drift: S,
     /// The covariances with the state, and with each parameter.
     with_state: [S; 4],
     with_params: [S; K],
@@ -112,6 +118,7 @@ impl<A: Arithmetic> Estimator<A, PARAMETERS> {
     ///
     /// Those of [`new`](Estimator::new), and a deviation is not finite, below 0, or that of a
     /// friction or of the rotor in an arithmetic without friction.
+    #[expect(clippy::indexing_slicing, reason = "i is below PARAMETERS")]
     pub fn with_params(
         params: Params<A::Scalar>,
         deviations: Params<A::Scalar>,
@@ -126,7 +133,20 @@ impl<A: Arithmetic> Estimator<A, PARAMETERS> {
                 return Err(Error::OutOfRange { name, value, unit, rule });
             }
         }
-        Self::build(params, noise, deviations.map(|(_, deviation)| deviation))
+        let zero = A::Scalar::ZERO;
+        let given = estimated(params.numbers());
+        let parameters = from_fn(|i| {
+            let ((name, given), (_, deviation)) = (given[i], deviations[i]);
+            let [most, drift] = [MOST, DRIFT].map(|x| A::Scalar::from_f64(x) * deviation);
+            let is_negative = given - most < zero && name != "rotor";
+            Parameter {
+                limits: [if is_negative { zero } else { given - most }, given + most],
+                drift: drift * drift,
+                with_state: [zero; 4],
+                with_params: from_fn(|j| if i == j { deviation * deviation } else { zero }),
+            }
+        });
+        Self::build(params, noise, parameters)
     }
 }
 
@@ -137,27 +157,13 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
     fn build(
         params: Params<A::Scalar>,
         noise: Noise<A::Scalar>,
-        deviations: [A::Scalar; K],
+        parameters: [Parameter<A::Scalar, K>; K],
     ) -> Result<Self, Error> {
         Range::AboveZero.check("angle", noise.angle.to_f64(), "rad")?;
         Range::AboveZero.check("torque", noise.torque.to_f64(), "N m")?;
-        let zero = A::Scalar::ZERO;
-        let mut parameters = deviations.map(|deviation| Parameter {
-            deviation,
-            with_state: [zero; 4],
-            with_params: [zero; K],
-        });
-        for (i, parameter) in parameters.iter_mut().enumerate() {
-            parameter.doubt(i, parameter.deviation);
-        }
-        Ok(Self {
-            model: Pendulum::new(params, State::HANGING)?,
-            given: params,
-            noise,
-            torque: noise.torque * noise.torque * A::Scalar::from_f64(MOST_NOISE),
-            of_state: None,
-            parameters,
-        })
+        let model = Pendulum::new(params, State::HANGING)?;
+        let torque = noise.torque * noise.torque * A::Scalar::from_f64(OF_TORQUE[1]);
+        Ok(Self { model, noise, torque, of_state: None, parameters })
     }
 
     /// The estimated state.
@@ -175,7 +181,8 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
     /// The standard deviations of the state, rad and rad/s. `None` before a measurement.
     #[must_use]
     pub fn deviations(&self) -> Option<[A::Scalar; 4]> {
-        self.of_state.as_ref().map(|covariances| diagonal(covariances).map(A::Scalar::sqrt))
+        let root = |x| if x > A::Scalar::ZERO { A::Scalar::sqrt(x) } else { A::Scalar::ZERO };
+        self.of_state.as_ref().map(|covariances| diagonal(covariances).map(root))
     }
 
     /// Corrects the estimate by measured angles θ1 and θ2, rad. The first ones are taken as they
@@ -184,96 +191,60 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
     /// # Errors
     ///
     /// An angle is not finite.
-    pub fn measure(&mut self, [theta1, theta2]: [A::Scalar; 2]) -> Result<(), Error> {
-        let zero = A::Scalar::ZERO;
-        let measured = State { theta1, theta2, dtheta1: zero, dtheta2: zero };
+    #[expect(clippy::indexing_slicing, reason = "i is 0 or 1")]
+    pub fn measure(&mut self, angles: [A::Scalar; 2]) -> Result<(), Error> {
+        let (zero, one, number) = (A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::from_f64);
+        let measured = State::from([angles[0], angles[1], zero, zero]);
         measured.validate()?;
-        match self.of_state {
-            None => {
-                let noises = [self.noise.angle, A::Scalar::from_f64(AT_FIRST)];
-                let [angle, velocity] = noises.map(|x| x * x);
-                self.of_state = Some(spread([angle, angle, velocity, velocity]));
-                self.model.set_state(measured)
-            }
-            Some(of_state) => {
-                let of_state = self.correct::<0>(theta1, of_state);
-                self.of_state = Some(self.correct::<1>(theta2, of_state));
-                Ok(())
-            }
-        }
-    }
-
-    /// Corrects by the angle of joint `I`. Returns the covariances of the state.
-    #[expect(clippy::indexing_slicing, reason = "I is 0 or 1")]
-    fn correct<const I: usize>(
-        &mut self,
-        angle: A::Scalar,
-        mut of_state: Matrix<A::Scalar>,
-    ) -> Matrix<A::Scalar> {
-        let number = A::Scalar::from_f64;
-        let mut y: [A::Scalar; 4] = self.model.state().into();
-        let error = wrap(angle - y[I]);
-        let square = error * error;
-        let of_angle = self.noise.angle * self.noise.angle;
-        let ratio = square / (of_state[I][I] + of_angle);
-        self.follow(ratio);
-        if ratio > number(PUSH * PUSH) {
-            // The velocities are in doubt by as much as the error needs in one step.
-            let dt = self.model.params().dt;
-            let of_velocity = square / (dt * dt);
-            let [of_angle1, of_angle2, ..] =
-                diagonal(&of_state).map(|x| if x > square { x } else { square });
-            of_state = spread([of_angle1, of_angle2, of_velocity, of_velocity]);
-            self.parameters.iter_mut().for_each(|x| x.with_state = [A::Scalar::ZERO; 4]);
-        }
-
-        let row = of_state[I];
-        let inverse = A::Scalar::ONE / (row[I] + of_angle);
-        let gain = row.map(|x| x * inverse);
-        add_scaled(&mut y, error, &gain);
-        for (covariances, x) in of_state.iter_mut().zip(row) {
-            add_scaled(covariances, -x, &gain);
-        }
-        let with_angle = self.parameters.map(|parameter| parameter.with_state[I]);
-        let mut params = *self.model.params();
-        let places =
-            estimated(params.numbers_mut()).into_iter().zip(estimated(self.given.numbers()));
-        for ((parameter, x), (place, (name, given))) in
-            self.parameters.iter_mut().zip(with_angle).zip(places)
-        {
-            add_scaled(&mut parameter.with_state, -x, &gain);
-            let part = x * inverse;
-            for (covariance, x) in parameter.with_params.iter_mut().zip(with_angle) {
-                *covariance = *covariance - part * x;
-            }
-            let most = number(MOST) * parameter.deviation;
-            *place = given + saturate(*place + part * error - given, most);
-            if *place < A::Scalar::ZERO && name != "rotor" {
-                *place = A::Scalar::ZERO;
-            }
-        }
-        // Parameters that no machine has change nothing.
-        let _ = self.model.set_params(params);
-        let _ = self.model.set_state(y.into());
-        of_state
-    }
-
-    /// Lets the variance of the torque follow the square of an error, relative to its variance.
-    fn follow(&mut self, ratio: A::Scalar) {
-        let number = A::Scalar::from_f64;
-        let within = |x, low, high| {
-            if x < low {
-                low
-            } else if x > high {
-                high
-            } else {
-                x
-            }
+        let [of_angle, of_torque] = [self.noise.angle, self.noise.torque].map(|x| x * x);
+        let Some(mut of_state) = self.of_state else {
+            let of_velocity = number(AT_FIRST * AT_FIRST);
+            self.of_state = Some(spread([of_angle, of_angle, of_velocity, of_velocity]));
+            return self.model.set_state(measured);
         };
-        let ratio = within(ratio, A::Scalar::ZERO, number(12.0));
-        let torque = self.torque * (A::Scalar::ONE + number(0.02) * (ratio - A::Scalar::ONE));
-        let given = self.noise.torque * self.noise.torque;
-        self.torque = within(torque, given * number(LEAST_NOISE), given * number(MOST_NOISE));
+        let mut y: [A::Scalar; 4] = self.model.state().into();
+        let mut params = *self.model.params();
+        for (i, angle) in angles.into_iter().enumerate() {
+            let error = wrap(angle - y[i]);
+            let square = error * error;
+            // The variance of the torque follows the errors.
+            let ratio = square / (of_state[i][i] + of_angle);
+            let rate = number(0.02) * (saturate(ratio, number(12.0)) - one);
+            let limits = OF_TORQUE.map(|part| of_torque * number(part));
+            self.torque = within(self.torque + self.torque * rate, limits);
+            if ratio > number(PUSH * PUSH) {
+                // The velocities are in doubt by as much as the error needs in one step.
+                let of_velocity = square / (params.dt * params.dt);
+                let [of_angle1, of_angle2, ..] =
+                    diagonal(&of_state).map(|x| if x > square { x } else { square });
+                of_state = spread([of_angle1, of_angle2, of_velocity, of_velocity]);
+                self.parameters.iter_mut().for_each(|x| x.with_state = [zero; 4]);
+            }
+
+            let with_angle = of_state[i];
+            let inverse = one / (with_angle[i] + of_angle);
+            let gain = with_angle.map(|x| x * inverse);
+            add_scaled(&mut y, error, &gain);
+            add_outer(&mut of_state, -one, &with_angle, &gain);
+            of_state[i][i] = with_angle[i] * of_angle * inverse; // the same, without cancellation
+            let with_angle = self.parameters.map(|parameter| parameter.with_state[i]);
+            let places = estimated(params.numbers_mut()).into_iter().zip(with_angle);
+            for (parameter, (place, x)) in self.parameters.iter_mut().zip(places) {
+                add_scaled(&mut parameter.with_state, -x, &gain);
+                let part = x * inverse;
+                for (covariance, x) in parameter.with_params.iter_mut().zip(with_angle) {
+                    *covariance = *covariance - part * x;
+                }
+                *place = within(*place + part * error, parameter.limits);
+            }
+        }
+        self.of_state = finite(of_state);
+        if K > 0 {
+            // Parameters that no machine has change nothing.
+            let _ = self.model.set_params(params);
+        }
+        let _ = self.model.set_state(y.into());
+        Ok(())
     }
 
     /// Takes a step of `dt` with a torque, N m. Before a measurement it does nothing.
@@ -281,124 +252,106 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
     /// # Errors
     ///
     /// The torque is not finite, or a derivative overflows.
+    #[expect(clippy::indexing_slicing, reason = "i is below K or 4")]
     pub fn step(&mut self, torque: A::Scalar) -> Result<(), ControlError> {
-        let number = A::Scalar::from_f64;
-        let LinearModel { a, b } = linearize_step(&self.model, torque)?;
-        let Some(of_state) = self.of_state else { return Ok(()) };
-        let before: [A::Scalar; 4] = self.model.state().into();
-        self.model.step(torque)?;
+        let [zero, one, half] = [A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::HALF];
+        let (mut next, mut middle) = (self.model.clone(), self.model.clone());
+        next.step(torque)?;
+        let Some(mut of_state) = self.of_state else { return Ok(()) };
+        let [theta1, theta2, before1, before2]: [A::Scalar; 4] = middle.state().into();
+        let [_, _, after1, after2]: [A::Scalar; 4] = next.state().into();
+        let [v1, v2] = [(before1 + after1) * half, (before2 + after2) * half];
+        let (dt, half_dt) = (middle.params().dt, middle.model().constants.half_dt);
+        middle.set_state([theta1 + half_dt * v1, theta2 + half_dt * v2, v1, v2].into())?;
+        // What a rate in the middle of the step changes until its end, to the second order in dt.
+        let LinearModel { a, b } = linearize(&middle, torque)?;
+        let mut lasting = a.map(|row| row.map(|x| dt * (half_dt * x)));
+        add_diagonal(&mut lasting, [dt; 4]);
+        let mut after = by_transposed(&lasting, &transpose(&a));
+        add_diagonal(&mut after, [one; 4]);
+        let slopes = self.slopes(&middle, [(after1 - before1) / dt, (after2 - before2) / dt]);
+        let slopes = slopes.map(|[x1, x2]| apply(&lasting, &[zero, zero, x1, x2]));
 
-        // A P Aᵀ, and the parts of the parameters and of the torque.
-        let half = transpose(&of_state.map(|row| apply(&a, &row)));
-        let mut of_state = half.map(|row| apply(&a, &row));
-        let slopes: [[A::Scalar; 4]; K] = self.slopes(before);
+        of_state = by_transposed(&by_transposed(&after, &of_state), &after);
         for (i, (parameter, slope)) in self.parameters.iter_mut().zip(&slopes).enumerate() {
-            let moved = apply(&a, &parameter.with_state);
-            parameter.with_state = moved;
-            for (slope, x) in slopes.iter().zip(&parameter.with_params) {
-                add_scaled(&mut parameter.with_state, *x, slope);
+            let moved = apply(&after, &parameter.with_state);
+            let mut change = [zero; 4];
+            for (slope, x) in slopes.iter().zip(parameter.with_params) {
+                change = plus_scaled(change, x, *slope);
             }
-            for (row, (moved, x)) in of_state.iter_mut().zip(moved.into_iter().zip(slope)) {
-                add_scaled(row, moved, slope);
-                add_scaled(row, *x, &parameter.with_state);
-            }
-            parameter.doubt(i, number(DRIFT) * parameter.deviation);
+            parameter.with_state = plus_scaled(moved, one, change);
+            // Its transpose follows when the matrix becomes symmetric.
+            add_outer(&mut of_state, one + one, slope, &plus_scaled(moved, half, change));
+            parameter.with_params[i] = parameter.with_params[i] + parameter.drift;
         }
-        for (row, x) in of_state.iter_mut().zip(b) {
-            add_scaled(row, self.torque * x, &b);
+        let b = apply(&lasting, &b);
+        add_outer(&mut of_state, self.torque, &b, &b);
+        symmetrize(&mut of_state);
+        let [angle, velocity] = IN_A_STEP.map(|x| A::Scalar::from_f64(x * x));
+        for (i, noise) in [angle, angle, velocity, velocity].into_iter().enumerate() {
+            // Rounding may have made it negative.
+            let own = if of_state[i][i] > zero { of_state[i][i] } else { zero };
+            of_state[i][i] = own + noise;
         }
-        // What the model does not say, and rounding.
-        let [angle, velocity] = [1e-6, 1e-3].map(|x| number(x * x));
-        let [one, half] = [A::Scalar::ONE, A::Scalar::HALF];
-        let (transposed, noise) =
-            (transpose(&of_state), spread([angle, angle, velocity, velocity]));
-        for (row, (other, noise)) in of_state.iter_mut().zip(transposed.iter().zip(&noise)) {
-            *row = row.map(|x| x * half);
-            add_scaled(row, half, other);
-            add_scaled(row, one, noise);
-        }
-        self.of_state = Some(of_state);
+        (self.model, self.of_state) = (next, finite(of_state));
         Ok(())
     }
 
-    /// The derivatives of the last step, from the state before, by each parameter: those of the
-    /// accelerations in the middle of the step.
-    fn slopes(&self, before: [A::Scalar; 4]) -> [[A::Scalar; 4]; K] {
-        let mut slopes = [[A::Scalar::ZERO; 4]; K];
-        if K > 0 {
-            let model = self.model.model();
-            let (half, dt) = (model.constants.half_dt, model.params.dt);
-            let [_, _, dtheta1, dtheta2]: [A::Scalar; 4] = self.model.state().into();
-            let [theta1, theta2, before1, before2] = before;
-            let rates =
-                [(before1, dtheta1), (before2, dtheta2)].map(|(x, y)| (x + y) * A::Scalar::HALF);
-            let angles = [theta1 + half * rates[0], theta2 + half * rates[1]];
-            let accelerations = [(dtheta1 - before1) / dt, (dtheta2 - before2) / dt];
-            let found = by_params::<A>(model, angles, rates, accelerations);
-            for (slope, [by1, by2]) in slopes.iter_mut().zip(found) {
-                *slope = [half * (dt * by1), half * (dt * by2), dt * by1, dt * by2];
-            }
+    /// The derivatives of the accelerations \[a1, a2\] of a motion by each parameter:
+    /// M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
+    fn slopes(&self, motion: &Pendulum<A>, [a1, a2]: [A::Scalar; 2]) -> [[A::Scalar; 2]; K] {
+        let (o, one) = (A::Scalar::ZERO, A::Scalar::ONE);
+        let mut slopes = [[o; 2]; K];
+        if K == 0 {
+            return slopes;
         }
+        let (model, sines) = (motion.model(), motion.sin_cos());
+        let State { dtheta1: v1, dtheta2: v2, .. } = motion.state();
+        let (params, nips) = (&model.params, model.constants.nips);
+        let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
+        let [_, (sin2, cos2)] = sines;
+        let [weight1, weight2] = directions(sines).map(|(sin, _)| params.gravity * sin);
+        let [coulomb1, coulomb2] = [v1, v2].map(|v| coulomb_friction::<A, A::Scalar>(model, v).0);
+        let (square, sum) = (v1 * v1, v1 + v2);
+        // Of l1 lc2 m2: what the links do to each other.
+        let on_link1 = sin2 * (sum * sum - nips * square) - cos2 * (a1 + a2);
+        let on_link2 = -(sin2 * ((one - nips) * square)) - cos2 * a1;
+        let of_tip = lc2 * on_link1 - weight1 - l1 * a1;
+        let forces: [[A::Scalar; 2]; PARAMETERS] = [
+            [-(lc1 * (weight1 + lc1 * a1)), o],
+            [l1 * of_tip, lc2 * (l1 * on_link2 - weight2 - lc2 * (a1 + a2))],
+            [params.mass2 * (of_tip - l1 * a1), params.mass2 * lc2 * on_link2],
+            [-a1, o],
+            [o, -(a1 + a2)],
+            [-v1, o],
+            [v2, -v2],
+            [-coulomb1, o],
+            [coulomb2, -coulomb2],
+            [a1 + a2, a1],
+        ];
+        let mass = MassMatrix::new::<A>(model, (sin2, cos2));
+        slopes.iter_mut().zip(forces).for_each(|(slope, forces)| *slope = mass.solve(forces));
         slopes
     }
 }
 
-impl<S: Real, const K: usize> Parameter<S, K> {
-    /// Adds a standard deviation to that of this parameter, which is at place `i`.
-    fn doubt(&mut self, i: usize, deviation: S) {
-        if let Some(own) = self.with_params.get_mut(i) {
-            *own = *own + deviation * deviation;
-        }
-    }
+#[expect(clippy::indexing_slicing, reason = "i is below 4")]
+fn add_diagonal<S: Real>(m: &mut Matrix<S>, diagonal: [S; 4]) {
+    diagonal.into_iter().enumerate().for_each(|(i, x)| m[i][i] = m[i][i] + x);
 }
 
-/// A matrix with this diagonal.
-fn spread<S: Real>([a, b, c, d]: [S; 4]) -> Matrix<S> {
-    let o = S::ZERO;
-    [[a, o, o, o], [o, b, o, o], [o, o, c, o], [o, o, o, d]]
+/// Where a variance overflows, the next measurement begins again.
+fn finite<S: Real>(covariances: Matrix<S>) -> Option<Matrix<S>> {
+    diagonal(&covariances).iter().all(|x| x.is_finite()).then_some(covariances)
 }
 
-/// The derivatives of \[θ̈1, θ̈2\] by each parameter: M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
-fn by_params<A: Arithmetic>(
-    model: &Model<A::Scalar>,
-    angles: [A::Scalar; 2],
-    [dtheta1, dtheta2]: [A::Scalar; 2],
-    [ddtheta1, ddtheta2]: [A::Scalar; 2],
-) -> [[A::Scalar; 2]; PARAMETERS] {
-    let (zero, one) = (A::Scalar::ZERO, A::Scalar::ONE);
-    let params = &model.params;
-    let sines = sin_cos::<A>(angles);
-    let [_, (sin2, cos2)] = sines;
-    let [(sin1, _), (sin_sum, _)] = directions(sines);
-    let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
-    let (dbeta, ddbeta) = (dtheta1 + dtheta2, ddtheta1 + ddtheta2);
-    let nips = model.constants.nips;
-    // Of l1 lc2 m2: what the links do to each other.
-    let square = dtheta1 * dtheta1;
-    let on_link1 = sin2 * (dbeta * dbeta - nips * square) - cos2 * ddbeta;
-    let on_link2 = -(sin2 * ((one - nips) * square)) - cos2 * ddtheta1;
-    let weight1 = params.gravity * sin1;
-    let weight2 = params.gravity * sin_sum;
-    let [dry1, dry2] =
-        [dtheta1, dtheta2].map(|dtheta| dry_friction::<A, A::Scalar>(model, dtheta).0);
-    let mass = MassMatrix::new::<A>(model, (sin2, cos2));
-    [
-        [-(lc1 * (weight1 + lc1 * ddtheta1)), zero],
-        [
-            l1 * (lc2 * on_link1 - weight1 - l1 * ddtheta1),
-            lc2 * (l1 * on_link2 - weight2 - lc2 * ddbeta),
-        ],
-        [
-            params.mass2 * (lc2 * on_link1 - weight1 - (l1 + l1) * ddtheta1),
-            params.mass2 * lc2 * on_link2,
-        ],
-        [-ddtheta1, zero],
-        [zero, -ddbeta],
-        [-dtheta1, zero],
-        [dtheta2, -dtheta2],
-        [-dry1, zero],
-        [dry2, -dry2],
-        [ddbeta, ddtheta1],
-    ]
-    .map(|forces| mass.solve(forces))
+/// x yᵀ.
+#[inline(never)] // saves flash
+fn by_transposed<S: Real>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
+    x.map(|row| y.map(|column| dot(row, column)))
+}
+
+fn within<S: Real>(x: S, [least, most]: [S; 2]) -> S {
+    let x = if x < least { least } else { x };
+    if x > most { most } else { x }
 }

@@ -4,6 +4,8 @@
 //! at both ends, and integrated by parts over it, they need only angles and velocities; these
 //! follow from a quadratic fit of some angles in succession.
 
+use core::array::from_fn;
+
 use super::error::ControlError;
 use super::matrix::check_finite;
 use crate::error::{Error, Range};
@@ -12,9 +14,11 @@ use crate::physics::{Joints, Params};
 
 /// The numbers that a motion tells.
 const N: usize = 10;
+/// Those from here on are friction.
+const FRICTION: usize = 6;
 /// Combinations whose evidence is below this part of the largest are not determined.
 const UNDETERMINED: f64 = 1e-10;
-/// The velocity below which dry friction is smooth, rad/s, as in a step that is short.
+/// The velocity below which Coulomb friction is smooth, rad/s, as in a step that is short.
 const WIDTH: f64 = 0.02;
 
 /// A sample of a recording.
@@ -40,17 +44,14 @@ pub struct Sample {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Evidence {
-    /// Rᵀ R, Rᵀ y and yᵀ y of the equations R x = y.
-    products: [[f64; N]; N],
-    sums: [f64; N],
-    square: f64,
+    /// \[R y\]ᵀ \[R y\] of the equations R x = y.
+    products: [[f64; N + 1]; N + 1],
     equations: f64,
 }
 
 impl Evidence {
     /// No recording.
-    pub const NONE: Self =
-        Self { products: [[0.0; N]; N], sums: [0.0; N], square: 0.0, equations: 0.0 };
+    pub const NONE: Self = Self { products: [[0.0; N + 1]; N + 1], equations: 0.0 };
 
     /// Adds a recording with a sample in each `dt`, s, of a machine under `gravity`, m/s². A
     /// velocity is that of a parabola through 2 `half` + 1 angles, and a window has so many
@@ -58,7 +59,7 @@ impl Evidence {
     ///
     /// # Errors
     ///
-    /// A number is not finite, `dt` is not above 0, or `half` or `window` is 0.
+    /// A number is not finite or overflows, `dt` is not above 0, or `half` or `window` is 0.
     pub fn add(
         &mut self,
         samples: &[Sample],
@@ -75,45 +76,34 @@ impl Evidence {
             check_finite("angles", &sample.angles)?;
             check_finite("torques", &sample.torques)?;
         }
-        for samples in samples.windows(window + 2 * half + 1).step_by(window.div_ceil(2)) {
+        let mut sum = self.clone();
+        let parabola = half.saturating_mul(2).saturating_add(1);
+        let windows = samples.windows(parabola.saturating_add(window));
+        for samples in windows.step_by((window / 2).max(1)) {
             let mut rows = [[0.0; N + 1]; 2];
-            for (i, (around, sample)) in
-                samples.windows(2 * half + 1).zip(samples.iter().skip(half)).enumerate()
-            {
+            for (i, around) in samples.windows(parabola).enumerate() {
                 let z = i as f64 / window as f64;
                 let p = z * (1.0 - z);
                 // 16 p² and its slope.
                 let (weight, slope) = (16.0 * p * p, 32.0 * p * (1.0 - 2.0 * z) / window as f64);
-                let motion = motion(around, dt);
-                for (row, terms) in rows.iter_mut().zip(terms(motion, gravity)) {
-                    let (momentum, force) = terms;
-                    for (x, (momentum, force)) in
-                        row.iter_mut().zip(momentum.into_iter().zip(force))
-                    {
+                let torques = around.get(half).map_or([0.0; 2], |sample| sample.torques);
+                let terms = terms(motion(around, dt), torques, gravity);
+                for (row, (momentum, force)) in rows.iter_mut().zip(terms) {
+                    for ((x, momentum), force) in row.iter_mut().zip(momentum).zip(force) {
                         *x += weight * dt * force - slope * momentum;
                     }
                 }
-                for (row, torque) in rows.iter_mut().zip(sample.torques) {
-                    let [.., y] = row;
-                    *y += weight * dt * torque;
+            }
+            for row in rows {
+                for (products, x) in sum.products.iter_mut().zip(row) {
+                    products.iter_mut().zip(row).for_each(|(product, y)| *product += x * y);
                 }
+                sum.equations += 1.0;
             }
-            rows.iter().for_each(|row| self.add_equation(row));
         }
+        check_finite("evidence", sum.products.as_flattened())?;
+        *self = sum;
         Ok(())
-    }
-
-    /// Adds the equation of ten factors and a result.
-    fn add_equation(&mut self, row: &[f64; N + 1]) {
-        let [factors @ .., y] = row;
-        for ((products, sum), x) in self.products.iter_mut().zip(&mut self.sums).zip(factors) {
-            for (product, other) in products.iter_mut().zip(factors) {
-                *product += x * other;
-            }
-            *sum += x * y;
-        }
-        self.square += y * y;
-        self.equations += 1.0;
     }
 
     /// The machine that fits the recordings best, without a friction below 0.
@@ -121,164 +111,146 @@ impl Evidence {
     pub fn solve(&self) -> Identified {
         let mut is_free = [true; N];
         loop {
-            let found = self.solve_free(&is_free);
-            let frictions = found.values.iter().zip(&mut is_free).skip(6);
-            let mut negative = frictions.filter(|(value, _)| **value < 0.0).peekable();
-            if negative.peek().is_none() {
+            let (found, before) = (self.solve_free(is_free), is_free);
+            for (is_free, value) in is_free.iter_mut().zip(found.values).skip(FRICTION) {
+                *is_free &= value >= 0.0;
+            }
+            if is_free == before {
                 return found;
             }
-            negative.for_each(|(_, is_free)| *is_free = false);
         }
     }
 
     /// As [`solve`](Self::solve), with 0 for each number that is not free.
-    fn solve_free(&self, is_free: &[bool; N]) -> Identified {
+    #[expect(clippy::indexing_slicing, reason = "i and j are below N")]
+    fn solve_free(&self, is_free: [bool; N]) -> Identified {
+        let products = &self.products;
         // Scaled, so that all numbers have the same weight. Row and column of one that is not free
         // are those of the identity.
-        let mut scales = [0.0; N];
-        for (i, (scale, row)) in scales.iter_mut().zip(&self.products).enumerate() {
-            let x = row.get(i).copied().unwrap_or(0.0);
-            *scale = if x > 0.0 { 1.0 / Real::sqrt(x) } else { 0.0 };
-        }
-        let mut scaled = self.products;
-        let mut sums = self.sums;
-        for (i, row) in scaled.iter_mut().enumerate() {
-            let (own, free) = (at(&scales, i), at(is_free, i));
-            for (j, x) in row.iter_mut().enumerate() {
-                let both = free && at(is_free, j);
-                *x = if both { *x * own * at(&scales, j) } else { f64::from(u8::from(i == j)) };
-            }
-        }
-        for (i, sum) in sums.iter_mut().enumerate() {
-            *sum = if at(is_free, i) { *sum * at(&scales, i) } else { 0.0 };
-        }
+        let scales: [f64; N] = from_fn(|i| match products[i][i] {
+            square if square > 0.0 => 1.0 / Real::sqrt(square),
+            _ => 1.0,
+        });
+        let sums = from_fn(|i| if is_free[i] { products[i][N] * scales[i] } else { 0.0 });
+        let mut scaled: [[f64; N]; N] = from_fn(|i| {
+            from_fn(|j| match is_free[i] && is_free[j] {
+                true => products[i][j] * scales[i] * scales[j],
+                false => f64::from(u8::from(i == j)),
+            })
+        });
         let vectors = diagonalize(&mut scaled);
-        let (mut values, mut inverse, mut undetermined) = ([0.0; N], [0.0; N], N);
-        let mut weakest = ([0.0; N], f64::INFINITY);
-        for (i, vector) in vectors.iter().enumerate() {
-            let evidence = scaled.get(i).map_or(0.0, |row| at(row, i));
-            if evidence < weakest.1 {
-                weakest = (*vector, evidence);
+        let (mut values, mut inverse, mut undetermined) = ([0.0; N], [0.0; N], 0);
+        let (mut weakest, mut least) = ([0.0; N], f64::INFINITY);
+        for (i, vector) in vectors.into_iter().enumerate() {
+            let evidence = scaled[i][i];
+            if evidence < least {
+                (weakest, least) = (vector, evidence);
             }
             if evidence > UNDETERMINED {
-                undetermined -= 1;
-                let along: f64 = vector.iter().zip(&sums).map(|(x, y)| x * y).sum();
-                for ((value, inverse), x) in values.iter_mut().zip(&mut inverse).zip(vector) {
-                    *value += x * along / evidence;
-                    *inverse += x * x / evidence;
+                let along = sum_of_products(&vector, &sums) / evidence;
+                for (j, x) in vector.into_iter().enumerate() {
+                    values[j] += x * along;
+                    inverse[j] += x * x / evidence;
+                }
+            } else {
+                undetermined += 1;
+                for (inverse, x) in inverse.iter_mut().zip(vector) {
+                    *inverse = if x.abs() > 1e-3 { f64::INFINITY } else { *inverse };
                 }
             }
         }
-        let fits: f64 = values.iter().zip(&sums).map(|(x, y)| x * y).sum();
         let spare = self.equations - N as f64;
-        let variance =
-            if spare > 0.0 { (self.square - fits).max(0.0) / spare } else { f64::INFINITY };
-        let mut errors = inverse.map(|x| Real::sqrt(x * variance));
-        for ((value, error), scale) in values.iter_mut().zip(&mut errors).zip(scales) {
-            *value *= scale;
-            *error *= scale;
-        }
-        Identified { values, errors, undetermined, weakest: weakest.0 }
+        let square = products[N][N] - sum_of_products(&values, &sums);
+        let variance = if spare > 0.0 { square.max(0.0) / spare } else { f64::INFINITY };
+        let values = from_fn(|i| values[i] * scales[i]);
+        let errors = from_fn(|i| match inverse[i] {
+            f64::INFINITY => f64::INFINITY,
+            inverse => Real::sqrt(inverse * variance) * scales[i],
+        });
+        Identified { values, errors, undetermined, weakest }
     }
 }
 
-/// An element of an array, whose indices are below its length.
-fn at<T: Copy + Default, const K: usize>(array: &[T; K], i: usize) -> T {
-    array.get(i).copied().unwrap_or_default()
+fn sum_of_products(x: &[f64; N], y: &[f64; N]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
-/// Angles and velocities, rad and rad/s, in the middle of some samples.
+/// Angles and velocities, rad and rad/s, in the middle of an odd number of samples.
 fn motion(samples: &[Sample], dt: f64) -> [[f64; 2]; 2] {
-    let half = samples.len() as f64 / 2.0 - 0.5;
-    let (mut sums, mut slopes, mut curves) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-    let (mut squares, mut fourths) = (0.0, 0.0);
+    let half = (samples.len() / 2) as f64;
+    let count = 2.0 * half + 1.0;
+    // The sums of t² and t⁴.
+    let squares = half * (half + 1.0) * count / 3.0;
+    let fourths = squares * (3.0 * half * (half + 1.0) - 1.0) / 5.0;
+    let determinant = count * fourths - squares * squares;
+    let mut motion = [[0.0; 2]; 2];
     for (i, sample) in samples.iter().enumerate() {
         let t = i as f64 - half;
-        squares += t * t;
-        fourths += t * t * t * t;
-        for (j, x) in sample.angles.into_iter().enumerate() {
-            if let (Some(sum), Some(slope), Some(curve)) =
-                (sums.get_mut(j), slopes.get_mut(j), curves.get_mut(j))
-            {
-                *sum += x;
-                *slope += t * x;
-                *curve += t * t * x;
+        let weights = [(fourths - squares * t * t) / determinant, t / (squares * dt)];
+        for (numbers, weight) in motion.iter_mut().zip(weights) {
+            for (number, angle) in numbers.iter_mut().zip(sample.angles) {
+                *number += weight * angle;
             }
         }
     }
-    let count = samples.len() as f64;
-    let determinant = count * fourths - squares * squares;
-    let [sum1, sum2] = sums;
-    let [curve1, curve2] = curves;
-    let middle = |sum, curve| (fourths * sum - squares * curve) / determinant;
-    [[middle(sum1, curve1), middle(sum2, curve2)], slopes.map(|slope| slope / squares / dt)]
+    motion
 }
 
-/// For both equations of motion d/dt p + f = τ, the factors of the ten numbers in p and in f.
-fn terms([[theta1, theta2], [v1, v2]]: [[f64; 2]; 2], gravity: f64) -> [([f64; N], [f64; N]); 2] {
-    let (sin1, sin_sum) = (libm::sin(theta1), libm::sin(theta1 + theta2));
+/// For both equations of motion d/dt p + f = τ, the factors of the ten numbers in p and in f, and
+/// τ beside f.
+fn terms(
+    [[theta1, theta2], [v1, v2]]: [[f64; 2]; 2],
+    [torque1, torque2]: [f64; 2],
+    gravity: f64,
+) -> [([f64; N + 1], [f64; N + 1]); 2] {
+    let (g1, g2) = (gravity * libm::sin(theta1), gravity * libm::sin(theta1 + theta2));
     let (sin2, cos2) = (libm::sin(theta2), libm::cos(theta2));
-    let dry = |v: f64| {
+    let coulomb = |v: f64| {
         let x = (v / WIDTH).clamp(-1.0, 1.0);
         x * (1.5 - 0.5 * x * x)
     };
-    let (g1, g2, o) = (gravity * sin1, gravity * sin_sum, 0.0);
-    let coupled = -sin2 * v1 * (v1 + v2);
+    let coupled = sin2 * v1 * (v1 + v2);
+    let o = 0.0;
     [
         (
-            [v1, v2, o, o, o, cos2 * (2.0 * v1 + v2), o, o, o, o],
-            [o, o, o, g1, g2, o, v1, o, dry(v1), o],
+            [v1, v2, o, o, o, cos2 * (2.0 * v1 + v2), o, o, o, o, o],
+            [o, o, o, g1, g2, o, v1, o, coulomb(v1), o, torque1],
         ),
-        ([o, v1, v2, o, o, cos2 * v1, o, o, o, o], [o, o, o, o, g2, -coupled, o, v2, o, dry(v2)]),
+        (
+            [o, v1, v2, o, o, cos2 * v1, o, o, o, o, o],
+            [o, o, o, o, g2, coupled, o, v2, o, coulomb(v2), torque2],
+        ),
     ]
 }
 
 /// Jacobi's method: a symmetric matrix becomes diagonal. Returns its eigenvectors, by rows.
+#[expect(clippy::indexing_slicing, reason = "i, j and k are below N")]
 fn diagonalize(m: &mut [[f64; N]; N]) -> [[f64; N]; N] {
-    let mut vectors = [[0.0; N]; N];
-    for (i, row) in vectors.iter_mut().enumerate() {
-        if let Some(x) = row.get_mut(i) {
-            *x = 1.0;
-        }
-    }
+    let mut vectors = from_fn(|i| from_fn(|j| f64::from(u8::from(i == j))));
     for _ in 0..30 {
         for i in 0..N {
             for j in i + 1..N {
-                let row = m.get(i).copied().unwrap_or_default();
-                let (ii, ij) = (at(&row, i), at(&row, j));
-                let jj = m.get(j).map_or(0.0, |row| at(row, j));
-                if ij == 0.0 {
+                if m[i][j] == 0.0 {
                     continue;
                 }
-                let ratio = (jj - ii) / (2.0 * ij);
-                let sign = if ratio < 0.0 { -1.0 } else { 1.0 };
-                let tangent = sign / (ratio.abs() + Real::sqrt(ratio * ratio + 1.0));
+                let ratio = (m[j][j] - m[i][i]) / (2.0 * m[i][j]);
+                let size = ratio.abs() + Real::sqrt(ratio * ratio + 1.0);
+                let tangent = if ratio < 0.0 { -1.0 / size } else { 1.0 / size };
                 let cos = 1.0 / Real::sqrt(tangent * tangent + 1.0);
                 let sin = tangent * cos;
-                rotate_rows(m, i, j, cos, sin);
-                for row in m.iter_mut() {
-                    let (x, y) = (at(row, i), at(row, j));
-                    if let Some(place) = row.get_mut(i) {
-                        *place = cos * x - sin * y;
-                    }
-                    if let Some(place) = row.get_mut(j) {
-                        *place = sin * x + cos * y;
-                    }
+                let turn = |x: f64, y: f64| (cos * x - sin * y, sin * x + cos * y);
+                for row in &mut *m {
+                    (row[i], row[j]) = turn(row[i], row[j]);
                 }
-                rotate_rows(&mut vectors, i, j, cos, sin);
+                for rows in [&mut *m, &mut vectors] {
+                    let (one, two) = (rows[i], rows[j]);
+                    rows[i] = from_fn(|k| turn(one[k], two[k]).0);
+                    rows[j] = from_fn(|k| turn(one[k], two[k]).1);
+                }
             }
         }
     }
     vectors
-}
-
-fn rotate_rows(m: &mut [[f64; N]; N], i: usize, j: usize, cos: f64, sin: f64) {
-    let (before, after) = m.split_at_mut(j.min(N));
-    if let (Some(one), Some(two)) = (before.get_mut(i), after.first_mut()) {
-        for (x, y) in one.iter_mut().zip(two) {
-            (*x, *y) = (cos * *x - sin * *y, sin * *x + cos * *y);
-        }
-    }
 }
 
 /// The machine that fits some recordings best, in numbers that a motion tells.
@@ -286,7 +258,7 @@ fn rotate_rows(m: &mut [[f64; N]; N], i: usize, j: usize, cos: f64, sin: f64) {
 pub struct Identified {
     /// The numbers of [`NAMES`](Self::NAMES), in their units.
     pub values: [f64; N],
-    /// Their standard errors, in the same units.
+    /// Their standard errors, in the same units; infinite where the recordings do not tell.
     pub errors: [f64; N],
     /// How many combinations of them the recordings do not determine.
     pub undetermined: usize,

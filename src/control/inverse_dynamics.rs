@@ -74,15 +74,16 @@ pub fn inverse_dynamics<A: Arithmetic>(
     let across = |(sin, cos), [x, y]: [A::Scalar; 2]| cos * x + sin * y;
     let force2 = center2.map(|x| params.mass2 * x);
     let force1 = add(force2, center1.map(|x| params.mass1 * x));
-    let [(friction1, _), (friction2, _)] = friction::<A, A::Scalar>(pendulum.model(), rates);
-    let torque2 = params.inertia2 * turn2 + lc2 * across(direction2, force2) - params.rotor * turn1;
-    let torque1 = torque2
+    let mut torque2 = params.inertia2 * turn2 + lc2 * across(direction2, force2);
+    let mut torque1 = torque2
         + params.inertia1 * turn1
         + lc1 * across(direction1, force1)
-        + (l1 - lc1) * across(direction1, force2)
-        - params.rotor * turn2
-        + friction1;
-    let torque2 = torque2 + friction2;
+        + (l1 - lc1) * across(direction1, force2);
+    if A::HAS_FRICTION {
+        let [(friction1, _), (friction2, _)] = friction::<A, A::Scalar>(pendulum.model(), rates);
+        torque1 = torque1 - params.rotor * (turn1 + turn2) + friction1;
+        torque2 = torque2 - params.rotor * turn1 + friction2;
+    }
     let (sin2, _) = pendulum.sin_cos()[1];
     let centrifugal = params.mass2 * l1 * lc2 * (rate1 * rate1) * sin2;
     let forces = Forces {

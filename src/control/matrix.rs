@@ -77,19 +77,17 @@ where
     result
 }
 
-// From here on all is `f64`.
-
 /// m += h x yᵀ.
 #[inline(never)]
-pub fn add_outer(m: &mut Matrix, h: f64, x: &[f64; 4], y: &[f64; 4]) {
+pub fn add_outer<S: Real>(m: &mut Matrix<S>, h: S, x: &[S; 4], y: &[S; 4]) {
     for (row, x) in m.iter_mut().zip(x) {
-        add_scaled(row, h * x, y);
+        add_scaled(row, h * *x, y);
     }
 }
 
 /// m += h x.
 #[inline(never)]
-pub fn add(m: &mut Matrix, h: f64, x: &Matrix) {
+pub fn add<S: Real>(m: &mut Matrix<S>, h: S, x: &Matrix<S>) {
     for (row, x) in m.iter_mut().zip(x) {
         add_scaled(row, h, x);
     }
@@ -97,20 +95,30 @@ pub fn add(m: &mut Matrix, h: f64, x: &Matrix) {
 
 /// m *= h.
 #[inline(never)]
-pub fn scale(m: &mut Matrix, h: f64) {
+pub fn scale<S: Real>(m: &mut Matrix<S>, h: S) {
     for x in m.as_flattened_mut() {
-        *x *= h;
+        *x = *x * h;
     }
 }
 
 /// The matrix with this diagonal and zeros.
 #[inline(never)]
-pub fn spread(diagonal: [f64; 4]) -> Matrix {
-    let mut result = [[0.0; 4]; 4];
+pub fn spread<S: Real>(diagonal: [S; 4]) -> Matrix<S> {
+    let mut result = [[S::ZERO; 4]; 4];
     let places = result.as_flattened_mut().iter_mut().step_by(5);
     places.zip(diagonal).for_each(|(place, x)| *place = x);
     result
 }
+
+/// m becomes (m + mᵀ) / 2.
+#[inline(never)]
+pub fn symmetrize<S: Real>(m: &mut Matrix<S>) {
+    let transposed = transpose(m);
+    add(m, S::ONE, &transposed);
+    scale(m, S::HALF);
+}
+
+// From here on all is `f64`.
 
 /// x y.
 #[inline(never)]
@@ -121,14 +129,6 @@ pub fn product(x: &Matrix, y: &Matrix) -> Matrix {
         *result = apply(&columns, row);
     }
     result
-}
-
-/// m becomes (m + mᵀ) / 2.
-#[inline(never)]
-pub fn symmetrize(m: &mut Matrix) {
-    let transposed = transpose(m);
-    add(m, 1.0, &transposed);
-    scale(m, 0.5);
 }
 
 /// xᵀ m x for a symmetric m.

@@ -14,7 +14,7 @@ pub(crate) fn friction<A: Arithmetic, V: Numbers<A::Scalar>>(
 ) -> [(V, V); 2] {
     let (viscous, coulomb) = (model.params.friction, model.params.coulomb);
     let resist = |viscous: V, coulomb: V, dtheta: V| {
-        let (part, slope) = dry_friction::<A, V>(model, dtheta);
+        let (part, slope) = coulomb_friction::<A, V>(model, dtheta);
         (viscous * dtheta + coulomb * part, viscous + coulomb * slope)
     };
     [
@@ -25,12 +25,12 @@ pub(crate) fn friction<A: Arithmetic, V: Numbers<A::Scalar>>(
 
 /// Coulomb friction as a part of its largest torque, and the slope by the velocity, s/rad.
 #[inline(always)]
-pub(crate) fn dry_friction<A: Arithmetic, V: Numbers<A::Scalar>>(
+pub(crate) fn coulomb_friction<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,
     dtheta: V,
 ) -> (V, V) {
     let one = V::splat(A::Scalar::ONE);
-    let x = (dtheta * model.constants.dry).saturate(one);
+    let x = (dtheta * model.constants.inverse_width).saturate(one);
     let rest = V::splat(A::Scalar::HALF) * (one - x * x);
-    (x + x * rest, (rest + (rest + rest)) * model.constants.dry)
+    (x + x * rest, (rest + (rest + rest)) * model.constants.inverse_width)
 }

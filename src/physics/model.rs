@@ -14,9 +14,9 @@ pub enum Form {
     Gymnasium,
 }
 
-/// The velocity, rad/s, from which on dry friction is constant, if dt allows it.
+/// The velocity, rad/s, from which on Coulomb friction is constant, if dt allows it.
 const WIDTH: f64 = 0.02;
-/// RK4 is stable up to a rate of 2.78/dt. Dry friction has at most this rate.
+/// RK4 is stable up to a rate of 2.78/dt. Coulomb friction has at most this rate.
 const STABLE: f64 = 2.5;
 
 /// The constants, of one acrobot or of many, named as in Sutton & Barto (1998), section 11.3.
@@ -36,8 +36,8 @@ pub struct Constants<V> {
     pub half_dt: V,
     /// dt/6, s.
     pub sixth_dt: V,
-    /// 1 over the velocity from which on dry friction is constant, s/rad.
-    pub dry: V,
+    /// 1 over the velocity from which on Coulomb friction is constant, s/rad.
+    pub inverse_width: V,
     /// Those of one form, which names them where it unpacks them.
     pub own: [V; 5],
 }
@@ -69,7 +69,7 @@ impl<V: Copy> Model<V> {
                 gravity2: f(one.gravity2, two.gravity2),
                 half_dt: f(one.half_dt, two.half_dt),
                 sixth_dt: f(one.sixth_dt, two.sixth_dt),
-                dry: f(one.dry, two.dry),
+                inverse_width: f(one.inverse_width, two.inverse_width),
                 own: [f(a, v), f(b, w), f(c, x), f(d, y), f(e, z)],
             },
         }
@@ -181,13 +181,13 @@ for_f32_and_f64! {
                 gravity2: m2 * lc2 * gravity,
                 half_dt: dt * 0.5,
                 sixth_dt: dt / 6.0,
-                dry: if has_friction { 1.0 / Self::width(&params) } else { 0.0 },
+                inverse_width: if has_friction { 1.0 / Self::width(&params) } else { 0.0 },
                 own,
             };
             Self { params, constants }
         }
 
-        /// The velocity from which on dry friction is constant, rad/s: so wide that a step is
+        /// The velocity from which on Coulomb friction is constant, rad/s: so wide that a step is
         /// stable. At rest the rates are those of M⁻¹ C, where C has the slopes of both joints.
         /// Their sum is convex in cos θ2, so largest where the elbow is straight or folded.
         const fn width(params: &Params<S>) -> S {

@@ -94,7 +94,7 @@ pub struct Params<S = f64> {
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,
-    /// Joints friction: each joint resists its velocity with a torque in proportion to it,
+    /// Viscous friction: each joint resists its velocity with a torque in proportion to it,
     /// N m s/rad; 0 or more. This and the fields below must be 0 in an arithmetic without friction.
     pub friction: Joints<S>,
     /// Coulomb friction: each joint resists with this torque as soon as it turns, N m; 0 or more.

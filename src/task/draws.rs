@@ -211,7 +211,7 @@ impl<S: Modeled> Draws<S> {
         let [most, other] = [high.rotor, low.rotor].map(S::abs);
         let most = if most > other { most } else { other };
         if low != high && most * most > low.inertia1 * low.inertia2 {
-            let rule = "at most the root of inertia1 times inertia2 where one is drawn, in";
+            let rule = "at most √(inertia1 inertia2) where one is drawn, in";
             let value = most.to_f64();
             return Err(Error::OutOfRange { name: "rotor", value, unit: "kg m²", rule });
         }

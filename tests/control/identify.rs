@@ -74,7 +74,7 @@ fn ten_seconds_tell_the_inertias() {
         assert!(largest(&found.values[8..], &[joint1, joint2]) < 0.2);
     }
     worst.sort_by(f64::total_cmp);
-    assert!(worst[10] < 0.005 && worst[19] < 0.015, "{worst:?}");
+    assert!(worst[10] < 0.002 && worst[19] < 0.009, "{worst:?}");
 }
 
 /// With the elbow locked nothing tells how the links couple.
@@ -89,6 +89,8 @@ fn what_a_recording_does_not_tell_is_counted() {
     evidence.add(&samples, 0.002, 9.81, 2, 250).unwrap();
     let found = evidence.solve();
     assert!(found.undetermined >= 4, "{found:?}");
+    let unknown = |i: usize| found.errors[i].is_infinite();
+    assert!([2, 5, 7, 9].into_iter().all(unknown) && ![3, 6, 8].into_iter().any(unknown));
     assert!(found.params(Params::DEFAULT).is_err());
 }
 

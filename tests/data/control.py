@@ -243,7 +243,7 @@ def main():
         p = np.array([*rng.uniform(LOW, HIGH), *decades(rng, -3, 0, 4), 0.0])
         p[-1] = rng.uniform(-1, 1) * np.sqrt(p[6] * p[7])
         y, *others = usual(rng)
-        y[2:] *= 0.01 if number % 4 > 1 else 1  # where dry friction is smooth
+        y[2:] *= 0.01 if number % 4 > 1 else 1  # where Coulomb friction is smooth
         lines += case(number, p, y, *others)
     head = [
         "# " + ", ".join(f"{name} {version(name)}" for name in PACKAGES),

@@ -68,13 +68,13 @@
 #define ACROBOT_DRAW_NORMAL 4
 
 // Bytes of an acrobot_t.
-#define ACROBOT_SIZE 256
+#define ACROBOT_SIZE 272
 
 // Its alignment. malloc may align less, on microcontrollers to 8 bytes.
 #define ACROBOT_ALIGN 16
 
 // Bytes of an acrobot_planner_t.
-#define ACROBOT_PLANNER_SIZE 384
+#define ACROBOT_PLANNER_SIZE 400
 
 // Bytes of an acrobot_action_space_t.
 #define ACROBOT_ACTION_SPACE_SIZE 64
@@ -169,6 +169,12 @@ typedef struct {
   float dtheta2;
 } acrobot_state_t;
 
+// A number for each joint: the fixed one and the elbow.
+typedef struct {
+  float joint1;
+  float joint2;
+} acrobot_joints_t;
+
 // To change one parameter, read all with acrobot_params, and set them.
 typedef struct {
   // Length of link 1, m; above 0. Default 1.
@@ -201,6 +207,14 @@ typedef struct {
   // Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
   // torque; 0, the default, draws nothing.
   float torque_noise;
+  // Viscous friction, N m s/rad; 0 or more. Default 0. This and the next two must be 0 in a batch.
+  acrobot_joints_t friction;
+  // Coulomb friction, N m; 0 or more. Default 0.
+  acrobot_joints_t coulomb;
+  // What a geared rotor takes from the coupling of the links, kg m²; finite, and so small that the
+  // mass matrix is positive definite. Default 0. A rotor of moment of inertia J, kg m², behind a
+  // gear g in the elbow adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1) g J here.
+  float rotor;
   // The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
   int dynamics;
 } acrobot_params_t;
@@ -214,6 +228,11 @@ typedef struct {
   float mean;
   float standard_deviation;
 } acrobot_draw_t;
+
+typedef struct {
+  acrobot_draw_t joint1;
+  acrobot_draw_t joint2;
+} acrobot_joint_draws_t;
 
 // How each parameter is drawn, in the order of acrobot_params_t. Zeros draw nothing.
 typedef struct {
@@ -231,6 +250,9 @@ typedef struct {
   acrobot_draw_t max_velocity2;
   acrobot_draw_t torques[3];
   acrobot_draw_t torque_noise;
+  acrobot_joint_draws_t friction;
+  acrobot_joint_draws_t coulomb;
+  acrobot_draw_t rotor;
 } acrobot_draws_t;
 
 // One step, linearized: deviations x of the state and u of the torque become A x + B u.

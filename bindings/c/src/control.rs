@@ -1,5 +1,6 @@
 //! A linear model and a linear-quadratic regulator.
 
+use acrobot::arithmetic::Damped;
 use acrobot::control::{LinearModel, difference, linearize_step, regulator};
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, State};
@@ -38,7 +39,7 @@ pub unsafe extern "C" fn acrobot_linearize_step(
 ) -> acrobot_status_t {
     change(acrobot, model, error, |acrobot| {
         check(model)?;
-        let pendulum = Pendulum::<Fast>::new(*acrobot.params(), read(state)?.into())?;
+        let pendulum = Pendulum::<Damped<Fast>>::new(*acrobot.params(), read(state)?.into())?;
         let LinearModel { a, b } = linearize_step(&pendulum, torque)?;
         Ok(acrobot_linear_model_t { a, b })
     })
@@ -57,7 +58,7 @@ pub unsafe extern "C" fn acrobot_lqr(
 
     change(acrobot, gain, error, |acrobot| {
         check(gain)?;
-        let pendulum = Pendulum::<Fast>::new(*acrobot.params(), read(target)?.into())?;
+        let pendulum = Pendulum::<Damped<Fast>>::new(*acrobot.params(), read(target)?.into())?;
         let mut weights = [[0.0; 4]; 4];
         let diagonal: [f32; 4] = State::from(read(q)?).into();
         let elements = weights.as_flattened_mut().iter_mut().step_by(5);

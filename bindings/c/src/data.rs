@@ -1,6 +1,5 @@
 //! The structs that pass data.
 
-use core::array::from_fn;
 use core::ffi::c_int;
 use core::mem::transmute;
 
@@ -79,6 +78,13 @@ impl From<acrobot_state_t> for State<f32> {
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct acrobot_joints_t {
+    pub joint1: f32,
+    pub joint2: f32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct acrobot_params_t {
     pub length1: f32,
     pub length2: f32,
@@ -94,6 +100,9 @@ pub struct acrobot_params_t {
     pub max_velocity2: f32,
     pub torques: [f32; 3],
     pub torque_noise: f32,
+    pub friction: acrobot_joints_t,
+    pub coulomb: acrobot_joints_t,
+    pub rotor: f32,
     pub dynamics: c_int,
 }
 
@@ -119,6 +128,13 @@ pub struct acrobot_draw_t {
 
 #[repr(C)]
 #[derive(Clone, Copy)]
+pub struct acrobot_joint_draws_t {
+    pub joint1: acrobot_draw_t,
+    pub joint2: acrobot_draw_t,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy)]
 pub struct acrobot_draws_t {
     pub length1: acrobot_draw_t,
     pub length2: acrobot_draw_t,
@@ -134,24 +150,20 @@ pub struct acrobot_draws_t {
     pub max_velocity2: acrobot_draw_t,
     pub torques: [acrobot_draw_t; 3],
     pub torque_noise: acrobot_draw_t,
+    pub friction: acrobot_joint_draws_t,
+    pub coulomb: acrobot_joint_draws_t,
+    pub rotor: acrobot_draw_t,
 }
 
-/// The numbers of [`acrobot_params_t`] and [`acrobot_draws_t`]. Their order is that of
-/// [`Params::numbers`], where the friction, which C does not have, follows.
-const NUMBERS: usize = 16;
+/// The numbers of [`acrobot_params_t`] and [`acrobot_draws_t`], in the order of
+/// [`Params::numbers`].
+const NUMBERS: usize = 21;
 
 /// [`acrobot_params_t`] without names.
 #[repr(C)]
 struct Fields {
     numbers: [f32; NUMBERS],
     dynamics: c_int,
-}
-
-/// Sets the numbers that C has.
-fn set<T: Copy>(params: &mut Params<T>, numbers: [T; NUMBERS]) {
-    for (to, number) in params.numbers_mut().into_iter().zip(numbers) {
-        *to = number;
-    }
 }
 
 impl TryFrom<acrobot_draws_t> for Draws<f32> {
@@ -179,20 +191,20 @@ impl TryFrom<acrobot_draws_t> for Draws<f32> {
             return Err(Rejected::number("kind", kind.into(), "", "from 0 to 4"));
         }
         let mut params = Draws::FIXED;
-        set(&mut params, draws);
+        params.numbers_mut().into_iter().zip(draws).for_each(|(to, draw)| *to = draw);
         Ok(Self::new(params)?)
     }
 }
 
 impl From<Params<f32>> for acrobot_params_t {
     fn from(params: Params<f32>) -> Self {
-        let numbers = params.numbers();
+        let numbers = params.numbers().map(|(_, number)| number);
         let dynamics = match params.dynamics {
             Dynamics::Nips => ACROBOT_DYNAMICS_NIPS,
             _ => ACROBOT_DYNAMICS_BOOK,
         };
         // SAFETY: both are `repr(C)` and have so many numbers before the dynamics.
-        unsafe { transmute(Fields { numbers: from_fn(|i| numbers[i].1), dynamics }) }
+        unsafe { transmute(Fields { numbers, dynamics }) }
     }
 }
 
@@ -212,7 +224,7 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
             }
         };
         let mut params = Self { dynamics, ..Self::default() };
-        set(&mut params, numbers);
+        params.numbers_mut().into_iter().zip(numbers).for_each(|(to, number)| *to = number);
         Ok(params)
     }
 }

@@ -2,6 +2,7 @@
 
 use core::mem::transmute;
 
+use acrobot::arithmetic::Damped;
 use acrobot::control::{Cost, Knot, Planner};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, State};
@@ -10,7 +11,7 @@ use crate::data::{acrobot_params_t, acrobot_state_t};
 use crate::memory::{Holder, Span, array, change, check, check_apart, check_result, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, status};
 
-pub const ACROBOT_PLANNER_SIZE: usize = 384;
+pub const ACROBOT_PLANNER_SIZE: usize = 400;
 
 #[repr(C, align(16))]
 pub struct acrobot_planner_t {
@@ -18,7 +19,7 @@ pub struct acrobot_planner_t {
 }
 
 impl Holder for acrobot_planner_t {
-    type Value = Planner<Fast>;
+    type Value = Planner<Damped<Fast>>;
 
     const TAG: u32 = u32::from_le_bytes(*b"plan");
 }

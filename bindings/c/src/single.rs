@@ -1,9 +1,10 @@
-//! One acrobot in arithmetic `Fast`.
+//! One acrobot in arithmetic `Damped<Fast>`.
 
 use core::ffi::c_int;
 use core::num::NonZeroU32;
 use core::ptr;
 
+use acrobot::arithmetic::Damped;
 use acrobot::task::{Balance, ResetBounds, Task};
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
@@ -14,7 +15,7 @@ use crate::memory::{Holder, change, check, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 use crate::task::AnyTask;
 
-pub const ACROBOT_SIZE: usize = 256;
+pub const ACROBOT_SIZE: usize = 272;
 
 pub const ACROBOT_ALIGN: usize = 16;
 
@@ -24,7 +25,7 @@ pub struct acrobot_t {
 }
 
 impl Holder for acrobot_t {
-    type Value = TimeLimit<Acrobot<Fast, AnyTask>>;
+    type Value = TimeLimit<Acrobot<Damped<Fast>, AnyTask>>;
 
     const TAG: u32 = u32::from_le_bytes(*b"acro");
 }

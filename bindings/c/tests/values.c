@@ -13,7 +13,7 @@ static const acrobot_state_t HANGING = {0, 0, 0, 0}, MOVING = {.1f, -.2f, .3f, -
 // Each number is another one.
 static const acrobot_params_t PARAMS = {
     1.1f, 1.2f, 1.3f, 1.4f, .5f, .6f, .7f, .8f, 9.1f, .05f, 12, 13, {-2, .1f, 3}, 0,
-    ACROBOT_DYNAMICS_NIPS,
+    {.01f, .02f}, {.03f, .04f}, .05f, ACROBOT_DYNAMICS_NIPS,
 };
 
 static void an_acrobot(void)
@@ -56,7 +56,7 @@ static void an_acrobot(void)
     }
 }
 
-// Its second acrobot does what one alone does.
+// Its second acrobot does what one alone does. It has no friction.
 static void a_batch(void)
 {
     ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_SIZE(COUNT)];
@@ -67,10 +67,11 @@ static void a_batch(void)
     bool terminated[COUNT], truncated[COUNT];
     acrobot_observation_t rows[COUNT], first[COUNT];
     const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL};
+    const acrobot_joints_t none = {0, 0};
     acrobot_batch_t *batch;
     acrobot_t alone;
     acrobot_state_t state;
-    acrobot_params_t params;
+    acrobot_params_t params = PARAMS, set;
     acrobot_step_t step;
     size_t count;
     ACCEPTED(acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch));
@@ -80,12 +81,14 @@ static void a_batch(void)
     ACCEPTED(acrobot_batch_set_state_of(batch, 1, &MOVING, NULL));
     ACCEPTED(acrobot_batch_state_of(batch, 1, &state));
     CHECK(same(&state, &MOVING, sizeof state));
-    ACCEPTED(acrobot_batch_set_params(batch, &PARAMS, NULL));
-    ACCEPTED(acrobot_batch_params(batch, &params));
-    CHECK(same(&params, &PARAMS, sizeof params));
+    params.friction = params.coulomb = none;
+    params.rotor = 0;
+    ACCEPTED(acrobot_batch_set_params(batch, &params, NULL));
+    ACCEPTED(acrobot_batch_params(batch, &set));
+    CHECK(same(&set, &params, sizeof params));
     ACCEPTED(acrobot_init(&alone, 0));
     ACCEPTED(acrobot_set_state(&alone, &MOVING, NULL));
-    ACCEPTED(acrobot_set_params(&alone, &PARAMS, NULL));
+    ACCEPTED(acrobot_set_params(&alone, &params, NULL));
     ACCEPTED(acrobot_step(&alone, ACROBOT_ACTION_NEGATIVE, &step));
     ACCEPTED(acrobot_batch_step(batch, actions, &results, COUNT));
     CHECK(same(&rows[1], &step.observation, sizeof rows[1]));
@@ -118,17 +121,20 @@ static void drawn_parameters(void)
     const acrobot_draw_t mass2 = {ACROBOT_DRAW_UNIFORM, .8f, 1.2f, 0, 0};
     const acrobot_draw_t inertia1 = {ACROBOT_DRAW_LOG_UNIFORM, .5f, 2, 0, 0};
     const acrobot_draw_t gravity = {ACROBOT_DRAW_NORMAL, 9.5f, 10.1f, 9.8f, .1f};
+    const acrobot_draw_t dry = {ACROBOT_DRAW_UNIFORM, .1f, .1f, 0, 0};
     acrobot_t acrobot;
     acrobot_params_t params;
     draws.mass2 = mass2;
     draws.inertia1 = inertia1;
     draws.inertia2.kind = ACROBOT_DRAW_AS_BEFORE;
     draws.gravity = gravity;
+    draws.coulomb.joint2 = dry;
     ACCEPTED(acrobot_init(&acrobot, 42));
     ACCEPTED(acrobot_draw_params(&acrobot, &draws, NULL));
     ACCEPTED(acrobot_params(&acrobot, &params));
     CHECK(params.mass1 == 1 && params.mass2 == .837671f && params.gravity == 9.766048f);
     CHECK(params.inertia1 == 1.9335401f && params.inertia2 == params.inertia1);
+    CHECK(params.coulomb.joint1 == 0 && params.coulomb.joint2 == .1f && params.rotor == 0);
 }
 
 static void controllers(void)

@@ -71,9 +71,9 @@ export interface Params {
   friction1: number;
   /** Friction between the links, N m s/rad; 0 or more, and 0 in "acrobot". Default: 0. */
   friction2: number;
-  /** Dry friction of the fixed joint, N m; 0 or more, and 0 in "acrobot". Default: 0. */
+  /** Coulomb friction of the fixed joint, N m; 0 or more, and 0 in "acrobot". Default: 0. */
   coulomb1: number;
-  /** Dry friction between the links, N m; 0 or more, and 0 in "acrobot". Default: 0. */
+  /** Coulomb friction between the links, N m; 0 or more, and 0 in "acrobot". Default: 0. */
   coulomb2: number;
   /** What a geared rotor takes from the links' coupling, kg m²; finite, and 0 in "acrobot". */
   rotor: number;

@@ -50,7 +50,7 @@ let views = [];
 function words() {
   if (!views[0]?.length) {
     const { memory, words } = wasm();
-    views = [Uint32Array, Float32Array].map((Type) => new Type(memory.buffer, words(), 90));
+    views = [Uint32Array, Float32Array].map((Type) => new Type(memory.buffer, words(), 105));
   }
   return views;
 }

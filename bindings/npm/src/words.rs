@@ -18,7 +18,7 @@ pub fn get_state() -> State<f32> {
 /// Writes the numbers in the order of their names, then that of the dynamics.
 pub fn set_params(params: &Params<f32>) {
     let dynamics = f32::from(u8::from(params.dynamics == Dynamics::Nips));
-    let mut words = [dynamics.to_bits(); 19];
+    let mut words = [dynamics.to_bits(); 22];
     for (word, (_, number)) in words.iter_mut().zip(params.numbers()) {
         *word = number.to_bits();
     }

@@ -113,7 +113,7 @@ def test_the_default_parameters_are_those_of_rust(kind, many):
 @BOTH
 @pytest.mark.parametrize("name", AcrobotEnv._NAMES)
 def test_each_parameter_changes_both_environments_alike(name, kind, many):
-    changes = {"book_or_nips": "nips", "AVAIL_TORQUE": [-0.5, 0.4, 0.2], "dt": 0.1}
+    changes = {"book_or_nips": "nips", "AVAIL_TORQUE": [-0.5, 0.4, 0.2], "dt": 0.1, "ROTOR": 0.1}
     states = []
     for change in {}, {name: changes.get(name, 0.25)}:
         env, envs = kind(**change), many(3, **change)

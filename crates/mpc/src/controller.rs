@@ -72,7 +72,7 @@ impl<const N: usize> Controller<N> {
     ///
     /// # Errors
     ///
-    /// A parameter is out of range, the largest torque is not above 0, or an encoder does not count.
+    /// A parameter is out of range, or the largest torque or a count is not above 0.
     pub fn new(settings: Settings) -> Result<Self, Error> {
         let [counts1, counts2] = settings.counts.map(f32::from);
         settings.params.validate()?;

@@ -157,7 +157,8 @@ impl<A: Arithmetic> Snapshot for Member<A> {
     }
 
     fn check(self) -> bool {
-        let has_friction = self.params.friction != Params::DEFAULT.friction;
+        let mut friction = self.params.numbers().into_iter().skip(16); // and the rotor
+        let has_friction = friction.any(|(_, number)| number != A::Scalar::ZERO);
         let valid = self.state.validate().is_ok()
             && self.params.validate().is_ok()
             && (A::HAS_FRICTION || !has_friction);

@@ -50,7 +50,7 @@ for name, machine in MACHINES.items():
     plant = DoublePendulumPlant(
         **machine, length=[0.2, 0.3], damping=[0.001, 0.002], gravity=9.81, gear_ratio=6
     )
-    for _ in range(40):
+    for _ in range(20):
         state = rng.uniform(-1, 1, 4) * [np.pi, np.pi, 10, 20]
         torque = rng.uniform(-6, 6)
         numbers = [*state, torque, *step(plant, state, torque)]

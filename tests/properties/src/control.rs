@@ -4,7 +4,8 @@ use std::array::from_fn;
 
 use acrobot::arithmetic::Real;
 use acrobot::control::{
-    ControlError, LinearModel, inverse_dynamics, linearize, linearize_step, lqr, velocities,
+    ControlError, Estimator, Evidence, LinearModel, Noise, Sample, inverse_dynamics, linearize,
+    linearize_step, lqr, velocities,
 };
 use acrobot::physics::Pendulum;
 use common::in_every_arithmetic;
@@ -39,6 +40,53 @@ fn results_are_finite_or_errors() {
         });
     }
     in_every_arithmetic!(check);
+}
+
+/// Whatever encoders and a motor say, the estimate is a state of a machine.
+#[test]
+fn estimates_are_those_of_machines() {
+    fn check<A: Tested>() {
+        let any = || number::<A::Scalar>(Range::Any);
+        let ticks = prop::collection::vec(([any(), any()], any()), 20);
+        let noises = [-20.0..5.0_f64, -20.0..5.0_f64];
+        holds(300, (params::<A>(Range::Any), noises, ticks), |(params, noises, ticks)| {
+            let [angle, torque] = noises.map(|x| A::Scalar::from_f64(x.exp()));
+            let noise = Noise { angle, torque };
+            let mut of_state = Estimator::<A>::new(params, noise).unwrap();
+            let mut of_params = Estimator::<A, 10>::with_params(params, params, noise).unwrap();
+            for (angles, torque) in ticks {
+                of_state.measure(angles).unwrap();
+                of_params.measure(angles).unwrap();
+                let _ = (of_state.step(torque), of_params.step(torque));
+                let deviations = [of_state.deviations(), of_params.deviations()];
+                assert!(deviations.into_iter().flatten().flatten().all(|x| x.is_finite()));
+                of_state.state().validate().unwrap();
+                of_params.state().validate().unwrap();
+                of_params.params().validate().unwrap();
+            }
+        });
+    }
+    in_every_arithmetic!(check);
+}
+
+#[test]
+fn no_recording_tells_nan() {
+    let any = || number::<f64>(Range::Any);
+    let sample = [any(), any(), any(), any()];
+    let given = (prop::collection::vec(sample, 0..60), any(), any(), 0..4_usize, 0..20_usize);
+    holds(2000, given, |(samples, dt, gravity, half, window)| {
+        let sample = |[a, b, c, d]: [f64; 4]| Sample { angles: [a, b], torques: [c, d] };
+        let samples: Vec<Sample> = samples.into_iter().map(sample).collect();
+        let mut evidence = Evidence::NONE;
+        let result = evidence.add(&samples, dt, gravity, half, window);
+        if !matches!(result, Err(ControlError::NotFinite { .. })) {
+            assert_eq!(result.is_ok(), dt > 0.0 && half > 0 && window > 0);
+        }
+        let found = evidence.solve();
+        assert!(found.weakest.iter().all(|x| x.is_finite()));
+        assert!(found.values.iter().all(|x| !x.is_nan()));
+        assert!(found.errors.iter().all(|x| *x >= 0.0));
+    });
 }
 
 /// Symmetric weights, of which half are positive semidefinite: those of sums of squares.

@@ -82,8 +82,8 @@ class Parameters:
     book_or_nips: Any = "book"
     FRICTION_1: Any = 0.0  #: viscous, of the fixed joint, N m s/rad; 0 or more
     FRICTION_2: Any = 0.0  #: viscous, of the joint between the links, N m s/rad; 0 or more
-    COULOMB_1: Any = 0.0  #: dry friction of the fixed joint, N m; 0 or more
-    COULOMB_2: Any = 0.0  #: dry friction of the joint between the links, N m; 0 or more
+    COULOMB_1: Any = 0.0  #: Coulomb friction of the fixed joint, N m; 0 or more
+    COULOMB_2: Any = 0.0  #: Coulomb friction of the joint between the links, N m; 0 or more
     ROTOR: Any = 0.0  #: what a geared rotor takes from the links' coupling, kg m²; finite
 
     metadata: dict[str, Any]

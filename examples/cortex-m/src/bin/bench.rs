@@ -5,9 +5,10 @@
 
 use core::hint::black_box;
 
-use acrobot::arithmetic::{Arithmetic, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Real, Reference};
 use acrobot::control::{
-    ControlError, difference, inverse_dynamics, linearize, linearize_step, lqr, velocities,
+    ControlError, Estimator, Noise, difference, inverse_dynamics, linearize, linearize_step, lqr,
+    velocities,
 };
 use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Theme};
@@ -22,7 +23,9 @@ fn main() -> ! {
     let mut counter = Counter::take();
     draw(&mut counter);
     let controlled = control::<Fast>("fast", &mut counter).is_ok()
-        && control::<Reference>("reference", &mut counter).is_ok();
+        && control::<Reference>("reference", &mut counter).is_ok()
+        && estimators::<Fast>("fast", &mut counter).is_ok()
+        && estimators::<Reference>("reference", &mut counter).is_ok();
     let equal = oled::drawn() == oled::DRAWN;
     println!("drawings are bit-identical: {equal}");
     process::exit(if controlled && equal { 0 } else { 1 })
@@ -82,5 +85,25 @@ fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Contr
     print("velocities", &mut || {
         let _ = black_box(velocities(black_box(&pendulum)));
     });
+    Ok(())
+}
+
+/// A measurement and a step of the same machine.
+fn estimators<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), ControlError> {
+    let params = Params { dt: A::Scalar::from_f64(0.01), ..Params::default() };
+    let noise = Noise { angle: A::Scalar::from_f64(1e-3), torque: A::Scalar::from_f64(0.05) };
+    let mut of_state = Estimator::<Damped<A>>::new(params, noise)?;
+    let mut of_params = Estimator::<Damped<A>, 10>::with_params(params, params, noise)?;
+    let (angles, torque) = ([A::Scalar::PI, A::Scalar::ZERO], A::Scalar::ZERO);
+    of_state.measure(angles)?;
+    of_params.measure(angles)?;
+    let count = counter.count(100, || {
+        let _ = black_box((of_state.measure(black_box(angles)), of_state.step(torque)));
+    });
+    println!("{name} estimator {count}");
+    let count = counter.count(100, || {
+        let _ = black_box((of_params.measure(black_box(angles)), of_params.step(torque)));
+    });
+    println!("{name} estimator_params {count}");
     Ok(())
 }

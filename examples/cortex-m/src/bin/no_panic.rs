@@ -14,8 +14,8 @@ use core::panic::PanicInfo;
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::control::{
-    Cost, Knot, Planner, difference, inverse_dynamics, linearize, linearize_step, lqr, regulator,
-    velocities,
+    Cost, Estimator, Evidence, Knot, Noise, Planner, Sample, difference, inverse_dynamics,
+    linearize, linearize_step, lqr, regulator, velocities,
 };
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
@@ -53,6 +53,9 @@ fn main() -> ! {
         learners();
         planner::<Fast>();
         planner::<Damped<Portable>>();
+        estimator::<Damped<Fast>>();
+        estimator::<Damped<Portable>>();
+        identify();
         policy();
     }
 }
@@ -249,6 +252,30 @@ fn planner<A: Arithmetic>() {
             black_box(planner.follow(plan, black_box(3), state()));
         }
     }
+}
+
+fn estimator<A: Arithmetic>() {
+    let noise = Noise { angle: number(), torque: number() };
+    let machine = params().with_inertias_about_joints([number(), number()]);
+    let machine = machine.with_rotor(number(), number());
+    let mut of_state = Estimator::<A>::new(machine, noise);
+    let mut of_params = Estimator::<A, 10>::with_params(machine, params(), noise);
+    for _ in 0..black_box(10) {
+        if let (Ok(of_state), Ok(of_params)) = (&mut of_state, &mut of_params) {
+            let angles = [number(), number()];
+            let _ = black_box((of_state.measure(angles), of_state.step(number())));
+            let _ = black_box((of_params.measure(angles), of_params.step(number())));
+            black_box((of_state.state(), of_params.deviations(), of_params.params()));
+        }
+    }
+}
+
+fn identify() {
+    let samples = [Sample { angles: [number(); 2], torques: [number(); 2] }; 20];
+    let mut evidence = Evidence::NONE;
+    let (half, window) = (black_box(1), black_box(2));
+    let _ = black_box(evidence.add(black_box(&samples), number(), number(), half, window));
+    let _ = black_box(evidence.solve().params(params()));
 }
 
 /// A policy from a file that is read at run time.
