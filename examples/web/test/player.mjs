@@ -8,7 +8,7 @@ import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 import { launch } from "../../../bindings/npm/browser.mjs";
-import { decodeRun } from "../page/link.js";
+import { actionsOf, decodeRun } from "../dist/link.js";
 
 /** Tests write their files here. */
 export const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
@@ -118,7 +118,7 @@ export async function steps(page, count) {
 /** The actions in the page's link to its run. */
 export async function linkedActions(page) {
   await page.click("#share");
-  return decodeRun(new URL(await page.inputValue("#link")).hash).actions;
+  return actionsOf(decodeRun(new URL(await page.inputValue("#link")).hash));
 }
 
 export async function downloaded(page, button) {

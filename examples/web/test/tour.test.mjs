@@ -1,0 +1,67 @@
+// A visitor's tour: the planner holds the acrobot up, somebody pulls it down, and it recovers.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { decodeRun } from "../dist/link.js";
+import {
+  onPage, open, paused, press, says, shownBits, shows, showsBits, steps, text,
+} from "./player.mjs";
+
+const holds = (page) => says(page, "#return", /^[1-9]\d*\.\d s$/);
+
+/** Drags the upright tip to the side, by a part of the picture's width, for a time in ms. */
+async function drag(page, part, time) {
+  const { x, y, width } = await page.locator("#stage").boundingBox();
+  await page.mouse.move(x + width / 2, y + 0.06 * width);
+  await page.mouse.down();
+  await page.mouse.move(x + (0.5 + part) * width, y + 0.06 * width, { steps: 4 });
+  await page.waitForTimeout(time);
+  await page.mouse.up();
+}
+
+let link, state;
+onPage("the planner holds the acrobot, also after pulls, without an end", {}, async (page) => {
+  const requests = [];
+  page.context().on("request", (request) => requests.push(request.url()));
+  const loads = () => requests.some((url) => url.endsWith("/control.js"));
+  assert.ok(!loads());
+  await page.click("#balance");
+  await says(page, "#thought", /^Plan of \d/);
+  assert.ok(loads());
+  await page.selectOption("#pace", "4");
+  await holds(page);
+  await page.selectOption("#pace", "1");
+  await drag(page, 0.3, 400);
+  await shows(page, "#return", "0.0 s");
+  await page.selectOption("#pace", "4");
+  await holds(page);
+  await page.click("#pause");
+  await page.click("#share");
+  [link, state] = [new URL(await page.inputValue("#link")).hash, await shownBits(page)];
+  await shows(page, "#link-field label", "Copied: a link with seed, physics and 500 torques");
+});
+
+test("the link replays torques and pulls with the same bits, and the planner goes on", () =>
+  open({ hash: link, reducedMotion: "reduce" }, async (page) => {
+    await says(page, "#status", /^Replay of a link/);
+    await steps(page, decodeRun(link).levels.length);
+    await showsBits(page, state);
+    await steps(page, 2);
+    assert.equal(await page.inputValue("#policy"), "planner");
+  }));
+
+onPage("keys push the tip, in every policy", {}, async (page) => {
+  await paused(page, 42);
+  await page.focus("#stage");
+  await page.keyboard.down("Shift");
+  await page.keyboard.down("ArrowRight");
+  await press(page, [1, 1, 1]);
+  await page.keyboard.up("Shift");
+  await page.keyboard.up("ArrowRight");
+  assert.match(await text(page, "#torques-caption"), /0\.00 N m/);
+  await page.click("#share");
+  const { levels, pushes } = decodeRun(new URL(await page.inputValue("#link")).hash);
+  assert.deepEqual(levels, [0, 0, 0]);
+  assert.ok(pushes[0][0] > 400, `${pushes}`);
+});
