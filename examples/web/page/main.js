@@ -34,7 +34,8 @@ function start() {
   };
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const isTouch = matchMedia("(hover: none)").matches;
-  const takeOver = `To take over, ${isTouch ? "touch a half of the picture" : "press ← or →"}.`;
+  const how = isTouch ? "touch the picture beside the links" : "press ← or →";
+  const takeOver = `To take over, ${how}.`;
   $("app").hidden = false;
   $("notice").hidden = true;
 
@@ -48,8 +49,9 @@ function start() {
   const held = { left: false, right: false };
   /** What pulls: a `point` of a link, and where to, in the picture or as seen from the point. */
   let grip = null;
-  /** The steps since the acrobot is upright. */
+  /** The steps since the acrobot is upright, and those before the user took over. */
   let upright = 0;
+  let before = 0;
 
   // ---- the episode
 
@@ -89,7 +91,9 @@ function start() {
     upright = isUpright(game.numbers) ? upright + 1 : 0;
     shown = 0;
     if (game.end === null) return;
-    const result = `${game.end === "goal" ? "Goal" : "Out of time"} after ${game.steps} steps.`;
+    const own = before > 0 ? `, ${game.steps - before} of them yours` : "";
+    const end = game.end === "goal" ? "Goal" : "Out of time";
+    const result = `${end} after ${game.steps} steps${own}.`;
     const continues = playing && !["keys", "link"].includes($("policy").value);
     if (continues) nextAt = performance.now() + INTERVAL;
     say(`${result} ${continues ? "The next seed follows." : "Press Restart or Next seed."}`);
@@ -99,7 +103,7 @@ function start() {
   const begin = (seed, params = game.params, run = replayed()) => {
     game.begin(seed, params, run?.start);
     game.free = $("policy").value === "planner" || (run !== null && actionsOf(run) === null);
-    upright = 0;
+    upright = before = 0;
     shown = params.dt;
     nextAt = Infinity;
     $("seed").value = seed;
@@ -155,10 +159,13 @@ function start() {
       const { torque, dt } = game.params;
       return `Planner plays with ${torque} N m, every ${dt} s. Pull the acrobot.`;
     }
-    return { keys: "You play.", link: "The replay runs." }[value] ?? `${policy} plays. ${takeOver}`;
+    const own = before > 0 ? " on. For an episode of your own, press Restart" : "";
+    return { keys: `You play${own}.`, link: "The replay runs." }[value] ?? `${policy} plays. ${takeOver}`;
   };
 
   const choose = (policy) => {
+    const takesOver = policy === "keys" && $("policy").value !== "keys";
+    before = takesOver ? game.steps : 0;
     $("policy").value = policy;
     if (policy === "planner") {
       // 5 decisions a second are too few to hold it, and 1 N m needs 17 s after each fall.
@@ -352,5 +359,6 @@ try {
 } catch (error) {
   $("app").hidden = true;
   $("notice").hidden = false;
+  $("notice").role = "alert";
   $("notice").textContent = `The page could not start: ${error.message}.`;
 }

@@ -1,6 +1,6 @@
-// A spring with a damper pulls a point of the acrobot: the change of both velocities in one step,
-// M(θ)⁻¹ Jᵀ F dt for the mass matrix M and the point's Jacobian J. The force is that at the end of
-// the step, so that the spring is stable with any time step.
+// A spring with a damper pulls a point of the acrobot. In a step it changes both velocities by
+// M(θ)⁻¹ Jᵀ F dt, for the mass matrix M and the point's Jacobian J. The force F is that after the
+// step, so that the spring is stable with any dt.
 
 /** The spring, N/m, and its damper, N s/m. */
 const [STIFFNESS, DAMPING] = [60, 8];
@@ -12,7 +12,7 @@ export function placesOf({ theta1, theta2 }, { length1, length2 }) {
   return [elbow, [elbow[0] + length2 * Math.sin(both), elbow[1] - length2 * Math.cos(both)]];
 }
 
-/** The point of the links that is closest to a place: its link, 0 or 1, and the part of its length. */
+/** The point of the links that is closest to a place: its `link`, and the `part` of its length. */
 export function nearest(state, params, [x, y]) {
   const [elbow, tip] = placesOf(state, params);
   const points = [[[0, 0], elbow], [elbow, tip]].map(([from, to], link) => {

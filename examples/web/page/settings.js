@@ -9,7 +9,7 @@ export const PARAMETERS = [
   ["torque", "Largest torque of the motor", "N m", 1, 10, 0.1, "", 0],
   ["mass1", "Mass of link 1", "kg", 1, 4, 0.05],
   ["mass2", "Mass of link 2", "kg", 1, 4, 0.05],
-  ["length1", "Length of link 1", "m", 1, 3, 0.05, "Moves the motor, not the centre of mass."],
+  ["length1", "Length of link 1", "m", 1, 3, 0.05, "Its centre of mass stays."],
   ["length2", "Length of link 2", "m", 1, 3, 0.05, "Changes only the picture and the tip height."],
   ["gravity", "Gravity", "m/s²", 9.8, 25, 0.1, "", 0],
 ].map(([name, label, unit, value, end, step, hint = "", start = step]) => {

@@ -32,7 +32,7 @@ test("the curve's baseline is the mean return of the untrained policy", () => {
   }
   assert.ok(Math.abs(sum / episodes - BASELINE) < 2, `${sum / episodes}`);
   const html = readFileSync(new URL("../dist/index.html", import.meta.url), "utf8");
-  assert.ok(html.includes(`untrained: −${-BASELINE}<`));
+  assert.ok(html.includes(`Bang-bang: −${-BASELINE}<`));
 });
 
 test("the picture between two steps has the angles and velocities of both", () => {

@@ -22,7 +22,7 @@ onPage("the page loads and plays a policy", {}, async (page) => {
     return [...new Set(new Uint32Array(data.buffer))].map((pixel) => pixel.toString(16));
   });
   // Background, links, joints and torque: opacity, blue, green, red.
-  const colors = ["0", "ffa8a012", "ff00b0b8", "ff2b3acc"];
+  const colors = ["0", "ffa8a012", "ff00646a", "ff2b3acc"];
   assert.deepEqual(colors.filter((color) => !drawn.includes(color)), []);
 });
 
@@ -89,7 +89,7 @@ onPage("after a policy's goal the next seed follows, and a key takes over", {}, 
   await page.focus("#pace");
   await page.selectOption("#pace", "1");
   await page.keyboard.press("ArrowLeft");
-  await shows(page, "#status", "You play.");
+  await says(page, "#status", /^You play on\. For an episode of your own, press Restart\.$/);
   assert.equal(await page.inputValue("#policy"), "keys");
 });
 
