@@ -16,7 +16,7 @@ export function showCharts(game) {
   const show = (id, title, names, unit, columns, options, more = "") => {
     const colors = [color("--accent"), color("--second")];
     const series = columns.map((values, i) => ({ values, color: colors[i] }));
-    const start = game.forgotten;
+    const start = game.first;
     plot($(id), { series, start, end: Math.max(game.steps, 50), unit: "steps", ...options });
     const last = columns.map((column, i) => {
       const text = `${names[i]} ${number(column.at(-1))} ${unit}`;
@@ -29,7 +29,7 @@ export function showCharts(game) {
   const limits = [-torque, torque].map((limit) => [limit, color("--muted")]);
   const room = { range: [-1.2, 1.2].map((part) => part * (torque || 1)), marks: limits };
   const largest = `<span class="hint">limit: ${number(torque)} N m</span>`;
-  show("torques", "Torque", [""], "N m", [[0, ...game.torques]], room, largest);
+  show("torques", "Torque", [""], "N m", [game.column(6)], room, largest);
 
   const columns = [0, 1, 2, 3, 4, 5].map((index) => game.column(index));
   const [energy, heights] = columns.slice(4);

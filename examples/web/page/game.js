@@ -23,14 +23,13 @@ export class Game {
   params;
   /** The state in which the inputs begin, or null for the seed's initial state. */
   start = null;
-  /** The level of each step, and its change of both velocities in units, or null. */
+  /** The last inputs: the level of each step, and its change of both velocities, or null. */
   levels = [];
   pushes = [];
-  /** Steps that were forgotten: a free game keeps the last `LIMIT`. */
-  forgotten = 0;
+  steps = 0;
   /** Whether the game goes on at the goal and at the limit of steps. */
   free = false;
-  /** Six numbers of each state: the first one, and after each step. */
+  /** The last states, each with its energy, the tip's height, and the torque that led to it. */
   #rows = [];
   /** `"goal"` or `"limit"` once the episode has ended. */
   end = null;
@@ -41,13 +40,24 @@ export class Game {
 
   /** Begins an episode, or throws if the package rejects the parameters. */
   begin(seed, params = this.params, start = null) {
+    this.#set(params);
+    this.acrobot.reset(seed);
+    if (start !== null) this.acrobot.state = start;
+    Object.assign(this, { seed, start, levels: [], pushes: [], steps: 0, end: null });
+    this.#rows = [this.#row(0)];
+  }
+
+  /** Changes the parameters for the next steps. The inputs then begin with the next step. */
+  change(params) {
+    this.#set(params);
+    Object.assign(this, { start: this.acrobot.state, levels: [], pushes: [] });
+  }
+
+  #set(params) {
     const { torque, ...others } = params;
     if (!(torque >= 0)) throw new Error(`torque must be at least 0 N m, got ${torque}`);
     this.acrobot.setParams({ ...others, torques: [-torque, 0, torque] });
-    this.acrobot.reset(seed);
-    if (start !== null) this.acrobot.state = start;
-    Object.assign(this, { seed, params, start, levels: [], pushes: [], forgotten: 0, end: null });
-    this.#rows = [this.#row()];
+    this.params = params;
   }
 
   /** Steps with a level of the motor. A push changes the velocities before the step. */
@@ -63,8 +73,10 @@ export class Game {
     const { terminated, truncated } = acrobot.stepTorque(torque);
     this.levels.push(level);
     this.pushes.push(push);
-    this.#rows.push(this.#row());
-    if (this.free) return this.#forget();
+    this.#rows.push(this.#row(torque));
+    this.steps++;
+    this.#forget();
+    if (this.free) return;
     if (terminated) this.end = "goal";
     else if (truncated) this.end = "limit";
   }
@@ -72,25 +84,25 @@ export class Game {
   /** Goes on without an end. */
   release() {
     Object.assign(this, { free: true, end: null });
-    this.#forget();
   }
 
   #forget() {
-    while (this.levels.length > LIMIT) {
-      for (const list of [this.levels, this.pushes, this.#rows]) list.shift();
-      this.forgotten++;
-      const [theta1, theta2, dtheta1, dtheta2] = this.#rows[0];
-      this.start = { theta1, theta2, dtheta1, dtheta2 };
-    }
+    if (this.#rows.length > LIMIT + 1) this.#rows.shift();
+    if (this.levels.length <= LIMIT) return;
+    this.levels.shift();
+    this.pushes.shift();
+    const [theta1, theta2, dtheta1, dtheta2] = this.#rows[0];
+    this.start = { theta1, theta2, dtheta1, dtheta2 };
   }
 
-  #row() {
+  #row(torque) {
     const { state, energy, tipHeight } = this.acrobot;
-    return Float32Array.of(...Object.values(state), energy, tipHeight);
+    return Float32Array.of(...Object.values(state), energy, tipHeight, torque);
   }
 
-  get steps() {
-    return this.forgotten + this.levels.length;
+  /** The step of the first of the last states. */
+  get first() {
+    return this.steps - this.#rows.length + 1;
   }
 
   /** −1 for each step except the one that reaches the goal. */
@@ -98,13 +110,9 @@ export class Game {
     return (this.end === "goal" ? 1 : 0) - this.steps;
   }
 
-  /** The four numbers of the state, the energy and the height of the tip. */
+  /** The four numbers of the state, the energy, the height of the tip, and the last torque. */
   get numbers() {
     return this.#rows.at(-1);
-  }
-
-  get torques() {
-    return this.levels.map((level) => torqueOf(level, this.params.torque));
   }
 
   /**
@@ -132,7 +140,7 @@ export class Game {
     return { theta1: angle(0), theta2: angle(1) };
   }
 
-  /** One of the six numbers, of the initial state and after each step. */
+  /** One of these numbers, of each of the last states. */
   column(index) {
     return Array.from(this.#rows, (row) => row[index]);
   }

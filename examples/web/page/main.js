@@ -121,6 +121,15 @@ function start() {
   };
   const replayed = () => ($("policy").value === "link" ? recorded : null);
 
+  /** Changes the parameters at once, except where another episode must begin. */
+  const setPhysics = (params) => {
+    if (game.steps === 0 || game.end !== null || replayed()) return begin(game.seed, params);
+    game.change(params);
+    shown = params.dt;
+    address();
+    changed();
+  };
+
   const reset = () => {
     begin(game.seed);
     say(`Restarted from the initial state of seed ${game.seed}.`);
@@ -169,7 +178,7 @@ function start() {
     $("policy").value = policy;
     if (policy === "planner") {
       // 5 decisions a second are too few to hold it, and 1 N m needs 17 s after each fall.
-      if (isSame(game.params, DEFAULTS)) begin(game.seed, { ...BALANCE });
+      if (isSame(game.params, DEFAULTS)) setPhysics({ ...BALANCE });
       game.release();
     } else if (policy === "link") {
       begin(recorded.seed, recorded.params);
@@ -282,9 +291,8 @@ function start() {
   const showParams = parametersPanel(
     () => game.params,
     (params) => {
-      begin(game.seed, params);
-      const restarts = "The episode restarts, because the physics has changed.";
-      say(playing ? `${restarts} ${player()}` : restarts);
+      setPhysics(params);
+      say(playing ? `The physics has changed. ${player()}` : "The physics has changed.");
     },
   );
 

@@ -21,7 +21,12 @@ function gainOf(planner) {
   });
 }
 
-onmessage = ({ data: { id, params, limit, start, seed } }) => {
+/** The last request. Those before it are obsolete. */
+let last = null;
+
+function plan() {
+  const { id, params, limit, start, seed } = last;
+  last = null;
   try {
     const began = performance.now();
     const planner = new Planner(params, limit);
@@ -35,4 +40,9 @@ onmessage = ({ data: { id, params, limit, start, seed } }) => {
   } catch ({ message }) {
     postMessage({ id, error: message });
   }
+}
+
+onmessage = ({ data }) => {
+  if (last === null) setTimeout(plan);
+  last = data;
 };
