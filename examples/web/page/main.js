@@ -17,6 +17,8 @@ const $ = (id) => document.getElementById(id);
 
 /** How long a policy's ended episode stays on the screen before the next begins, ms. */
 const INTERVAL = 1500;
+/** The least time between two updates of numbers and plots while it plays, ms. */
+const PERIOD = 80;
 const STEPS = "Steps (at most 500)";
 
 const isSame = (params, others) =>
@@ -198,8 +200,9 @@ function start() {
   /** Requests an update of everything except the picture, which each frame draws. */
   const changed = () => (dirty = true);
 
-  const update = () => {
-    dirty = false;
+  let updated = 0;
+  const update = (now) => {
+    [dirty, updated] = [false, now];
     const seconds = (steps) => `${(steps * game.params.dt).toFixed(1)} s`;
     $("step").textContent = game.steps;
     $("return").textContent = game.free ? seconds(upright) : minus(String(game.return));
@@ -248,7 +251,8 @@ function start() {
     const pulled = grip && { point: grip.point, target: target() };
     const part = calm.matches ? 1 : Math.min(shown / dt, 1);
     drawStage(game, part, plans ? planner.path : [], pulled);
-    if (dirty) update();
+    // Plots take longer than all else.
+    if (dirty && (!playing || now - updated >= PERIOD)) update(now);
   };
 
   // ---- keys and buttons
