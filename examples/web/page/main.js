@@ -19,7 +19,6 @@ const $ = (id) => document.getElementById(id);
 const INTERVAL = 1500;
 /** The least time between two updates of numbers and plots while it plays, ms. */
 const PERIOD = 80;
-const STEPS = "Steps (at most 500)";
 
 const isSame = (params, others) =>
   Object.entries(others).every(([name, value]) => Object.is(params[name], value));
@@ -51,7 +50,7 @@ function start() {
   const held = { left: false, right: false };
   /** What pulls: a `point` of a link, and where to, in the picture or as seen from the point. */
   let grip = null;
-  /** The steps since the acrobot is upright, and those before the user took over. */
+  /** The seconds since the acrobot is upright, and the steps before the user took over. */
   let upright = 0;
   let before = 0;
 
@@ -90,7 +89,7 @@ function start() {
     } catch (error) {
       return pause(minus(error.message)); // With extreme physics an energy is infinite.
     }
-    upright = isUpright(game.numbers) ? upright + 1 : 0;
+    upright = isUpright(game.numbers) ? upright + game.params.dt : 0;
     shown = 0;
     if (game.end === null) return;
     const own = before > 0 ? `, ${game.steps - before} of them yours` : "";
@@ -171,20 +170,17 @@ function start() {
       return `Planner plays with ${torque} N m, every ${dt} s. Pull the acrobot.`;
     }
     const own = before > 0 ? " on. For an episode of your own, press Restart" : "";
-    return { keys: `You play${own}.`, link: "The replay runs." }[value] ?? `${policy} plays. ${takeOver}`;
+    const others = { keys: `You play${own}.`, link: "The replay runs." };
+    return others[value] ?? `${policy} plays. ${takeOver}`;
   };
 
   const choose = (policy) => {
     const takesOver = policy === "keys" && $("policy").value !== "keys";
     before = takesOver ? game.steps : 0;
     $("policy").value = policy;
-    if (policy === "planner") {
-      // 5 decisions a second are too few to hold it, and 1 N m needs 17 s after each fall.
-      if (isSame(game.params, DEFAULTS)) setPhysics({ ...BALANCE });
-      game.release();
-    } else if (policy === "link") {
-      begin(recorded.seed, recorded.params);
-    } else if (policy !== "keys" && (game.end !== null || game.free)) {
+    if (policy === "planner") game.release();
+    else if (policy === "link") begin(recorded.seed, recorded.params);
+    else if (policy !== "keys" && (game.end !== null || game.free)) {
       begin(game.seed, isSame(game.params, BALANCE) ? { ...DEFAULTS } : game.params);
     }
     showParams();
@@ -203,10 +199,9 @@ function start() {
   let updated = 0;
   const update = (now) => {
     [dirty, updated] = [false, now];
-    const seconds = (steps) => `${(steps * game.params.dt).toFixed(1)} s`;
     $("step").textContent = game.steps;
-    $("return").textContent = game.free ? seconds(upright) : minus(String(game.return));
-    $("steps-label").textContent = game.free ? `Steps (${seconds(game.steps)})` : STEPS;
+    $("return").textContent = game.free ? `${upright.toFixed(1)} s` : minus(String(game.return));
+    $("steps-label").textContent = game.free ? "Steps" : "Steps (at most 500)";
     $("return-label").textContent = game.free ? "Upright for" : "Return";
     $("pause").textContent = playing ? "Pause" : "Play";
     const verdicts = { goal: `Goal! ${game.steps} steps`, limit: "Out of time" };
@@ -274,9 +269,17 @@ function start() {
   });
   const buttons = { pause: toggle, single, reset, next };
   for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
-  $("policy").onchange = ({ target }) => choose(target.value);
+  $("policy").onchange = ({ target }) => {
+    // With Gymnasium's 1 N m a swing-up takes at least 12 s, and a touch is enough for a fall.
+    const isWeak = target.value === "planner" && isSame(game.params, DEFAULTS);
+    choose(target.value);
+    if (isWeak) setPhysics({ ...BALANCE });
+    showParams();
+    if (playing) say(player());
+  };
   $("balance").onclick = () => {
-    choose("planner");
+    $("policy").value = "planner";
+    $("policy").dispatchEvent(new Event("change"));
     if (!playing) play();
   };
   // After a click. Who uses the keyboard may go on with ↑ and ↓.

@@ -1,7 +1,7 @@
 // Draws the acrobot in the page's colours, the path of the tip to come, and the spring.
 
 import { FULL } from "./game.js";
-import { placeOf } from "./push.js";
+import { placeOf, placesOf } from "./push.js";
 import { color } from "./plot.js";
 
 const picture = document.querySelector("#picture");
@@ -41,9 +41,10 @@ export function drawStage(game, part, path, pulled) {
     for (const point of points) context.lineTo(...at(point));
     context.stroke();
   };
-  line(path, accent, [1, 2]);
+  const shown = game.between(part);
+  if (path.length > 0) line([placesOf(shown, game.params)[1], ...path], accent, [1, 2]);
   if (pulled !== null) {
-    const from = placeOf(pulled.point, game.between(part), game.params);
+    const from = placeOf(pulled.point, shown, game.params);
     line([from, pulled.target], second, []);
     context.fillStyle = second;
     context.beginPath();
