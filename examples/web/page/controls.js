@@ -3,8 +3,6 @@
 import { nearest } from "./push.js";
 import { placeAt } from "./stage.js";
 
-/** How close to a link a finger pulls it, m. Elsewhere it applies torque. */
-const NEAR = 0.35;
 /** Where keys pull the tip to, as seen from it, m. */
 const PUSHES = {
   ArrowLeft: [-0.3, 0], ArrowRight: [0.3, 0], ArrowUp: [0, 0.3], ArrowDown: [0, -0.3],
@@ -52,30 +50,18 @@ export function connectControls({ keys, hold, grip, acrobot }) {
     push(null);
   });
 
-  /** Holds the side that a pointer's event chooses while that pointer is down. */
-  const holdBy = (element, sideOf) => {
-    const pointers = new Map();
-    element.addEventListener("pointerdown", (event) => {
-      const side = sideOf(event);
-      if (side === null) return;
-      element.setPointerCapture(event.pointerId);
-      pointers.set(event.pointerId, side);
-      hold(side, true);
-    });
-    element.addEventListener("lostpointercapture", ({ pointerId }) => {
-      const side = pointers.get(pointerId);
-      const isLast = pointers.delete(pointerId) && ![...pointers.values()].includes(side);
-      if (isLast) hold(side, false);
-    });
-    element.addEventListener("contextmenu", (event) => event.preventDefault());
-  };
   for (const side of ["left", "right"]) {
     const button = $(side);
-    holdBy(button, () => side);
+    button.addEventListener("pointerdown", ({ pointerId }) => {
+      button.setPointerCapture(pointerId);
+      hold(side, true);
+    });
+    for (const type of ["lostpointercapture", "blur"]) {
+      button.addEventListener(type, () => hold(side, false));
+    }
     for (const [type, on] of [["keydown", true], ["keyup", false]]) {
       button.addEventListener(type, ({ key }) => [" ", "Enter"].includes(key) && hold(side, on));
     }
-    button.addEventListener("blur", () => hold(side, false));
   }
 
   const stage = $("stage");
@@ -87,13 +73,11 @@ export function connectControls({ keys, hold, grip, acrobot }) {
   let pulling = null;
   let point;
   stage.addEventListener("pointerdown", (event) => {
-    if (pulling !== null) return;
+    if (pulling !== null || event.button !== 0) return;
     const { state, params } = acrobot;
     point = nearest(state, params, placeAt(...placeIn(event), params));
-    const isMouse = event.pointerType === "mouse";
-    if (isMouse ? event.button !== 0 : point.distance > NEAR) return;
-    stage.setPointerCapture(event.pointerId);
     pulling = event.pointerId;
+    stage.setPointerCapture(pulling);
     grip({ point, at: placeIn(event) });
   });
   stage.addEventListener("pointermove", (event) => {
@@ -104,8 +88,7 @@ export function connectControls({ keys, hold, grip, acrobot }) {
     pulling = null;
     grip(null);
   });
-  holdBy(stage, (event) => {
-    if (event.pointerType === "mouse" || event.pointerId === pulling) return null;
-    return placeIn(event)[0] < stage.clientWidth / 2 ? "left" : "right";
-  });
+  for (const id of ["stage", "left", "right"]) {
+    $(id).addEventListener("contextmenu", (event) => event.preventDefault());
+  }
 }

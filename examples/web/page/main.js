@@ -35,8 +35,7 @@ function start() {
   };
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const isTouch = matchMedia("(hover: none)").matches;
-  const how = isTouch ? "touch the picture beside the links" : "press ← or →";
-  const takeOver = `To take over, ${how}.`;
+  const takeOver = `To take over, press ${isTouch ? "◀ or ▶" : "← or →"}.`;
   $("app").hidden = false;
   $("notice").hidden = true;
 

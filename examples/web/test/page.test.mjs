@@ -7,9 +7,10 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 import { Learner } from "../dist/acrobot-rs/policies.js";
+import { actionsOf } from "../dist/link.js";
 import { ACTIONS, trace } from "./native.mjs";
 import {
-  downloaded, folder, linkedActions, onPage, open, paused, press, says, shownBits, shows, showsBits,
+  downloaded, folder, linked, onPage, open, paused, press, says, shownBits, shows, showsBits,
   stepped, steps, text,
 } from "./player.mjs";
 
@@ -42,7 +43,7 @@ onPage("keys apply torque, and states are bit-identical to native", {}, async (p
   await page.waitForTimeout(500);
   await page.keyboard.up("ArrowLeft");
   await page.keyboard.press("Space");
-  const actions = await linkedActions(page);
+  const actions = actionsOf(await linked(page));
   const played = actions.slice(ACTIONS.length);
   assert.ok(played.includes(2) && played.includes(0), `${played}`);
   await showsBits(page, trace("42", actions).at(-1));

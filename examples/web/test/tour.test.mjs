@@ -5,7 +5,7 @@ import { test } from "node:test";
 
 import { decodeRun } from "../dist/link.js";
 import {
-  onPage, open, paused, press, says, shownBits, shows, showsBits, steps, text,
+  linked, onPage, open, paused, press, says, shownBits, shows, showsBits, steps, text,
 } from "./player.mjs";
 
 const holds = (page) => says(page, "#return", /^[1-9]\d*\.\d s$/);
@@ -60,8 +60,7 @@ onPage("keys push the tip, in every policy", {}, async (page) => {
   await page.keyboard.up("Shift");
   await page.keyboard.up("ArrowRight");
   assert.match(await text(page, "#torques-caption"), /0\.00 N m/);
-  await page.click("#share");
-  const { levels, pushes } = decodeRun(new URL(await page.inputValue("#link")).hash);
+  const { levels, pushes } = await linked(page);
   assert.deepEqual(levels, [0, 0, 0]);
   assert.ok(pushes[0][0] > 400, `${pushes}`);
 });
