@@ -9,7 +9,7 @@ import { attempt, parametersPanel } from "./parameters.js";
 import { PlannerPolicy, isUpright } from "./planner.js";
 import { minus } from "./plot.js";
 import { placesOf, pull } from "./push.js";
-import { BALANCE, DEFAULTS, parseSeed } from "./settings.js";
+import { BALANCE, DEFAULTS, LIMIT, parseSeed } from "./settings.js";
 import { drawStage, placeAt } from "./stage.js";
 import { trainingPanel } from "./training.js";
 
@@ -177,8 +177,10 @@ function start() {
     const takesOver = policy === "keys" && $("policy").value !== "keys";
     before = takesOver ? game.steps : 0;
     $("policy").value = policy;
-    if (policy === "planner") game.release();
-    else if (policy === "link") begin(recorded.seed, recorded.params);
+    if (policy === "planner") {
+      game.release();
+      nextAt = Infinity;
+    } else if (policy === "link") begin(recorded.seed, recorded.params);
     else if (policy !== "keys" && (game.end !== null || game.free)) {
       begin(game.seed, isSame(game.params, BALANCE) ? { ...DEFAULTS } : game.params);
     }
@@ -224,9 +226,9 @@ function start() {
     const { dt } = game.params;
     if (playing && game.end === null) {
       shown += elapsed * Number($("pace").value);
-      // The limit of steps ends this loop even if dt is tiny.
-      while (shown >= dt && playing && game.end === null) {
-        const over = shown - dt;
+      // With a tiny dt a frame shows fewer steps than it should.
+      for (let i = 0; shown >= dt && playing && game.end === null && i < LIMIT; i++) {
+        const over = i + 1 < LIMIT ? shown - dt : 0;
         step();
         shown = playing ? over : dt;
         changed();

@@ -83,14 +83,20 @@ function longRun(below) {
 
 test("the link of a game without an end replays the bits of its last steps", () => {
   const game = longRun(randoms());
+  const { state, params: machine } = game.acrobot;
+  const other = new Acrobot({ params: machine });
+  other.state = { ...state, dtheta1: state.dtheta1 + 1, dtheta2: state.dtheta2 - 0.5 };
+  other.stepTorque(5);
+  game.step(FULL, [UNITS, -UNITS / 2]);
+  assert.deepEqual(game.acrobot.state, other.state);
+
   const { seed, params, start, levels, pushes } = decodeRun(encodeRun(game));
-  assert.equal(levels.length, 500);
+  assert.deepEqual([levels.length, game.steps, game.end], [500, 701, null]);
   const replay = new Game(seed, params);
   replay.begin(seed, params, start);
   replay.free = true;
   levels.forEach((level, step) => replay.step(level, pushes[step]));
   assert.deepEqual(replay.numbers, game.numbers);
-  assert.ok(game.steps === 700 && game.end === null);
 });
 
 test("a pull does the work that the energy gains", () => {

@@ -124,6 +124,8 @@ onPage("a tiny time step does not freeze the page", {}, async (page) => {
   await page.fill("#dt", "1e-9");
   await stepped(page, 500);
   assert.match(await text(page, "#status"), /^Out of time/);
+  await page.selectOption("#policy", "planner");
+  await stepped(page, 1500);
 });
 
 test("a link replays a run, and an invalid link is rejected", async () => {
