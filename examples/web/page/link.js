@@ -67,20 +67,23 @@ export function decodeRun(hash) {
     if (!list.every(isValid)) rejected(`${name} must be at most ${rule}`, fields.get(name));
     return list;
   };
-  const isInteger = (largest, count) => (number, i) =>
-    Number.isInteger(number) && Math.abs(number) <= largest && !Object.is(number, -0) && i < count;
-  const [most, rule] = [3 * LIMIT, (count, largest) => `${count} integers up to ±${largest}`];
-  const torques = listOf("torques", rule(LIMIT, FULL), isInteger(FULL, LIMIT));
+  const integers = (name, largest, count) => {
+    const isValid = (number, i) =>
+      Number.isInteger(number) && Math.abs(number) <= largest && !Object.is(number, -0) && i < count;
+    return listOf(name, `${count} integers up to ±${largest}`, isValid);
+  };
+  const torques = integers("torques", FULL, LIMIT);
   const levels = torques.length > 0 ? torques : Array.from(actions, (each) => FULL * (each - 1));
   const pushes = levels.map(() => null);
-  const pushed = listOf("pushes", rule(most, PUSH), isInteger(PUSH, most));
+  const pushed = integers("pushes", PUSH, 3 * LIMIT);
   for (let i = 0; i < pushed.length; i += 3) {
     const [step, ...push] = pushed.slice(i, i + 3);
     if (!(step in pushes) || push.length < 2) rejected("pushes must be of steps", pushed);
     pushes[step] = push;
   }
-  const state = listOf("state", "4 finite numbers", (number) => Number.isFinite(Math.fround(number)));
-  if (state.length % 4 !== 0 || state.length > 4) rejected("state must be 4 numbers", state);
+  const isFinite32 = (number, i) => Number.isFinite(Math.fround(number)) && i < 4;
+  const state = listOf("state", "4 finite numbers", isFinite32);
+  if (state.length % 4 !== 0) rejected("state must be 4 numbers", state);
   const entries = state.map((number, i) => [STATE[i], number]);
   const start = entries.length === 0 ? null : Object.fromEntries(entries);
   return { seed, params, policy: fields.get("policy") ?? undefined, start, levels, pushes };

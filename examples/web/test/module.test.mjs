@@ -64,6 +64,10 @@ test("an invalid link is rejected with the reason", () => {
   for (const [bad, message] of [
     ["#seed=4&actions=13", /^actions must be at most 500 of 0, 1 and 2, got "13"$/],
     ["#seed=", /^seed must have from 1 to 600 decimal digits, got ""$/],
+    ["#torques=2048", /^torques must be at most 500 integers up to ±2047, got "2048"$/],
+    ["#torques=1&pushes=1_2_3", /^pushes must be of steps, got \[1,2,3\]$/],
+    ["#state=1_2_3", /^state must be 4 numbers, got \[1,2,3\]$/],
+    ["#policy=learnt", /^policy in the link must be planner, got "learnt"$/],
     ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
   ]) {
     assert.throws(() => decodeRun(bad), { message });
