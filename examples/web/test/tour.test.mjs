@@ -20,36 +20,35 @@ async function drag(page, part, time) {
   await page.mouse.up();
 }
 
-let link, state;
-onPage("the planner holds the acrobot, also after pulls, without an end", {}, async (page) => {
-  const requests = [];
-  page.context().on("request", (request) => requests.push(request.url()));
-  const loads = () => requests.some((url) => url.endsWith("/control.js"));
-  assert.ok(!loads());
-  await page.click("#balance");
-  await says(page, "#thought", /^Plan of \d/);
-  assert.ok(loads());
-  await page.selectOption("#pace", "4");
-  await holds(page);
-  await page.selectOption("#pace", "1");
-  await drag(page, 0.3, 400);
-  await shows(page, "#return", "0.0 s");
-  await page.selectOption("#pace", "4");
-  await holds(page);
-  await page.click("#pause");
-  await page.click("#share");
-  [link, state] = [new URL(await page.inputValue("#link")).hash, await shownBits(page)];
-  await shows(page, "#link-field label", "Copied: a link with seed, physics and 500 torques");
-});
-
-test("the link replays torques and pulls with the same bits, and the planner goes on", () =>
-  open({ hash: link, reducedMotion: "reduce" }, async (page) => {
+test("the planner holds the acrobot, also after pulls, and a link replays the bits", async () => {
+  let link, state;
+  await open({}, async (page) => {
+    // The module for planning is not loaded before, and not in the page's thread.
+    const files = await page.evaluate(() => performance.getEntriesByType("resource"));
+    assert.deepEqual(files.filter(({ name }) => /control\.js|planning/.test(name)), []);
+    await page.click("#balance");
+    await says(page, "#thought", /^Plan of \d/);
+    assert.match(page.workers()[0].url(), /planning\.js$/);
+    await page.selectOption("#pace", "4");
+    await holds(page);
+    await page.selectOption("#pace", "1");
+    await drag(page, 0.3, 400);
+    await shows(page, "#return", "0.0 s");
+    await page.selectOption("#pace", "4");
+    await holds(page);
+    await page.click("#pause");
+    await page.click("#share");
+    [link, state] = [new URL(await page.inputValue("#link")).hash, await shownBits(page)];
+    await says(page, "#link-field label", /^Copied: a link with seed, physics and \d{3} torques$/);
+  });
+  await open({ hash: link, reducedMotion: "reduce" }, async (page) => {
     await says(page, "#status", /^Replay of a link/);
     await steps(page, decodeRun(link).levels.length);
     await showsBits(page, state);
     await steps(page, 2);
     assert.equal(await page.inputValue("#policy"), "planner");
-  }));
+  });
+});
 
 onPage("keys push the tip, in every policy", {}, async (page) => {
   await paused(page, 42);
