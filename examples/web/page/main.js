@@ -271,7 +271,7 @@ function start() {
   const buttons = { pause: toggle, single, reset, next };
   for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
   $("policy").onchange = ({ target }) => {
-    // With Gymnasium's 1 N m a swing-up takes at least 12 s, and a touch is enough for a fall.
+    // With Gymnasium's 1 N m a swing-up takes at least 10 s, and a touch is enough for a fall.
     const isWeak = target.value === "planner" && isSame(game.params, DEFAULTS);
     choose(target.value);
     if (isWeak) setPhysics({ ...BALANCE });
