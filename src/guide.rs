@@ -48,6 +48,7 @@ pages! {
     equations "equations.md",
     benchmarks "benchmarks.md",
     learning "learning.md",
+    real "real.md",
     swingup "swingup.md",
     realaigym "realaigym.md",
     optimum "optimum.md",

@@ -152,6 +152,7 @@ fn excerpts_are_in_their_files() {
     let unindented = |text: &str| text.lines().map(str::trim_start).collect::<Vec<_>>().join("\n");
     for (page, fence, count) in [
         ("docs/control.md", "```rust,ignore (", 1),
+        ("docs/real.md", "```rust,ignore (", 2),
         ("docs/embedded.md", "```rust,ignore (", 2),
         ("docs/c.md", "```c (", 8),
     ] {

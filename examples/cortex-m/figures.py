@@ -94,6 +94,15 @@ ADDITIONS = {
     "lqr": "flash of `linearize_step`, `lqr`, `deviation` and the regulator's torque",
     "lqr_stack": "stack of `lqr`",
 }
+REAL = {
+    "upright_ms": "upright from hanging, after ms",
+    "again_ms": "upright after a push of 6 rad/s, after ms",
+    "tick_instructions": "instructions of a tick, most",
+    "slices": "slices of planning in 10 s",
+    "slice_ticks": "ticks during a slice, most",
+    "flash_bytes": "flash of the whole firmware, bytes",
+    "ram_bytes": "RAM of the whole firmware, bytes",
+}
 ADDED, UPRIGHT = "what a firmware adds to an acrobot", "instructions at 100 Hz, upright"
 
 
@@ -185,13 +194,21 @@ def sizes(arithmetics, **options):
     return [(arithmetic, size) for arithmetic, _, size in minimal(arithmetics, **options)]
 
 
-def measure_balance():
+def measure_firmware(name, column):
     # Its messages name source files by their paths, whose length would count.
     home = os.environ.get("CARGO_HOME", pathlib.Path.home() / ".cargo")
     rustflags = f"--remap-path-prefix={home}="
-    return printed("balance", rustflags=rustflags) | {
-        ("10_Nm", "flash_bytes"): flash(image("balance", rustflags=rustflags))
+    return printed(name, rustflags=rustflags) | {
+        (column, "flash_bytes"): flash(image(name, rustflags=rustflags))
     }
+
+
+def measure_balance():
+    return measure_firmware("balance", "10_Nm")
+
+
+def measure_real():
+    return measure_firmware("real", "real")
 
 
 def measure_additions():
@@ -210,6 +227,7 @@ TABLES = {
     "additions": Table(ADDED, {"fast": "bytes"}, ADDITIONS, measure_additions),
     "balance": Table("largest torque", LIMITS, BALANCE, measure_balance),
     "control": Table(UPRIGHT, CONTROLLED, CONTROL, lambda: printed("bench")),
+    "real": Table("a real acrobot", {"real": "6 N m"}, REAL, measure_real),
     "cores": Table("instructions per step", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(steps)),
     "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: of_cores(stacks)),
     "sizes": Table("bytes of flash", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(sizes)),

@@ -7,9 +7,10 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 import { Learner } from "../dist/acrobot-rs/policies.js";
+import { actionsOf } from "../dist/link.js";
 import { ACTIONS, trace } from "./native.mjs";
 import {
-  downloaded, folder, linkedActions, onPage, open, paused, press, says, shownBits, shows, showsBits,
+  downloaded, folder, linked, onPage, open, paused, press, says, shownBits, shows, showsBits,
   stepped, steps, text,
 } from "./player.mjs";
 
@@ -22,7 +23,7 @@ onPage("the page loads and plays a policy", {}, async (page) => {
     return [...new Set(new Uint32Array(data.buffer))].map((pixel) => pixel.toString(16));
   });
   // Background, links, joints and torque: opacity, blue, green, red.
-  const colors = ["0", "ffa8a012", "ff00b0b8", "ff2b3acc"];
+  const colors = ["0", "ffa8a012", "ff00646a", "ff2b3acc"];
   assert.deepEqual(colors.filter((color) => !drawn.includes(color)), []);
 });
 
@@ -42,7 +43,7 @@ onPage("keys apply torque, and states are bit-identical to native", {}, async (p
   await page.waitForTimeout(500);
   await page.keyboard.up("ArrowLeft");
   await page.keyboard.press("Space");
-  const actions = await linkedActions(page);
+  const actions = actionsOf(await linked(page));
   const played = actions.slice(ACTIONS.length);
   assert.ok(played.includes(2) && played.includes(0), `${played}`);
   await showsBits(page, trace("42", actions).at(-1));
@@ -89,7 +90,7 @@ onPage("after a policy's goal the next seed follows, and a key takes over", {}, 
   await page.focus("#pace");
   await page.selectOption("#pace", "1");
   await page.keyboard.press("ArrowLeft");
-  await shows(page, "#status", "You play.");
+  await says(page, "#status", /^You play on\. For an episode of your own, press Restart\.$/);
   assert.equal(await page.inputValue("#policy"), "keys");
 });
 
@@ -108,11 +109,13 @@ onPage("parameters act as in the crate, and invalid ones are rejected", {}, asyn
   await page.focus(".parameter:has(#mass1) [type=range]");
   await page.keyboard.press("ArrowRight");
   assert.equal(await page.inputValue("#mass1"), "1.05");
-  await shows(page, "#step", "0");
-  await says(page, "#status", /^The episode restarts, because the physics has changed\./);
+  // At once, without a restart.
+  await shows(page, "#step", String(ACTIONS.length));
+  await shows(page, "#status", "The physics has changed.");
 
   await page.click("#defaults");
   assert.equal(await page.inputValue("#mass1"), "1");
+  await page.keyboard.press("r");
   await press(page, ACTIONS);
   await showsBits(page, trace("42", ACTIONS).at(-1));
 });
@@ -121,6 +124,8 @@ onPage("a tiny time step does not freeze the page", {}, async (page) => {
   await page.fill("#dt", "1e-9");
   await stepped(page, 500);
   assert.match(await text(page, "#status"), /^Out of time/);
+  await page.selectOption("#policy", "planner");
+  await stepped(page, 1500);
 });
 
 test("a link replays a run, and an invalid link is rejected", async () => {

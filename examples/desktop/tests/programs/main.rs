@@ -69,6 +69,15 @@ fn pictures_are_those_of_the_pages() {
     }
 }
 
+/// Each model's row says that the acrobot is upright at the end of each part.
+#[test]
+fn a_real_acrobot_is_held() {
+    let table = Folder::new("real").printed("real --count 1");
+    let rows: Vec<&str> = table.lines().skip(2).collect();
+    assert_eq!(rows.len(), 3, "{table}");
+    assert!(rows.iter().all(|row| row.matches("| 1, in").count() == 3), "{table}");
+}
+
 #[test]
 fn bad_arguments_are_rejected_with_a_reason() {
     let folder = Folder::new("rejected");
@@ -78,6 +87,7 @@ fn bad_arguments_are_rejected_with_a_reason() {
         ("episode --out no/a.svg", "Error: cannot write no/a.svg"),
         ("stay_up --episodes 0", "0 is not in 1.."),
         ("realaigym --tries 0", "0 is not in 1.."),
+        ("real --count 0", "0 is not in 1.."),
         ("trace 013", "an action must be 0, 1 or 2"),
         ("swing_up --load /dev/zero", "weights must"),
         ("swing_up --steps 1 --episodes 1", "cannot be used with"),

@@ -1,0 +1,146 @@
+//! Slices of work: each improves the plan that the controller follows.
+
+use core::iter::{once, repeat};
+
+use acrobot::control::{ControlError, Knot, Planner};
+use acrobot::physics::{Pendulum, saturate};
+use acrobot::{Error, Params, State};
+
+use crate::controller::{Arithmetic, Controller, Settings};
+
+/// The part of the motor's torque that plans use. The rest corrects deviations.
+const PLANNED: f32 = 0.9;
+/// The iterations of a slice.
+const ITERATIONS: u32 = 4;
+/// After so many slices, one takes the estimated parameters.
+const SLICES: u32 = 20;
+
+#[derive(Clone, Copy, Debug)]
+enum Work {
+    /// To compute the model's regulator, of which plans need what a deviation at the end costs.
+    Model,
+    Plan,
+    /// Whether there is a plan: just done, or until its first decision is due.
+    Done(bool),
+    Due(bool),
+}
+
+/// What the main loop does. It needs about as much memory as two plans, and several KB of stack.
+#[derive(Clone, Debug)]
+pub struct Replanner<const N: usize> {
+    limit: f32,
+    /// Seconds of a tick, as a part of a decision's.
+    ticks: f32,
+    planner: Planner<Arithmetic>,
+    /// The planner's parameters, and those for the next one.
+    params: Params<f32>,
+    estimated: Params<f32>,
+    work: Work,
+    slices: u32,
+    /// The plan, its first state, and the decision with which it begins.
+    plan: [Knot<f32>; N],
+    start: State<f32>,
+    begin: u32,
+    /// Decisions before the work began, and how many later the plan begins.
+    before: u32,
+    ahead: u32,
+}
+
+impl<const N: usize> Replanner<N> {
+    /// A replanner without a plan.
+    ///
+    /// # Errors
+    ///
+    /// The parameters have no regulator.
+    pub fn new(settings: Settings) -> Result<Self, ControlError> {
+        let ticks = settings.ticks as f32;
+        let params = of_decisions(&settings.params, ticks);
+        Ok(Self {
+            limit: settings.limit,
+            ticks,
+            planner: Planner::new(params, PLANNED * settings.limit)?,
+            params,
+            estimated: settings.params,
+            work: Work::Model,
+            slices: 0,
+            plan: [Knot::EMPTY; N],
+            start: State::HANGING,
+            begin: 0,
+            before: 0,
+            ahead: 1,
+        })
+    }
+
+    /// Gives the controller the plan, once its first decision is due, and takes the next work. No
+    /// tick may come between, so this is short: it copies two plans, and simulates a few decisions.
+    pub fn exchange(&mut self, controller: &mut Controller<N>) {
+        let now = controller.decisions;
+        if let Work::Done(is_good) = self.work {
+            let took = now.wrapping_sub(self.before);
+            self.ahead = (took + 1).max(self.ahead.saturating_sub(1)).min(N as u32 / 2);
+            self.work = Work::Due(is_good);
+        }
+        if let Work::Due(is_good) = self.work {
+            let late = now.wrapping_sub(self.begin).cast_signed();
+            if late < 0 {
+                return;
+            }
+            if is_good {
+                controller.plan = self.plan;
+                controller.next = late as usize;
+            }
+        }
+        self.slices += 1;
+        if self.slices == SLICES {
+            self.slices = 0;
+            self.estimated = *controller.params();
+            self.work = Work::Model;
+            return;
+        }
+        self.before = now;
+        self.work = match self.look(controller) {
+            Ok(()) => Work::Plan,
+            Err(_) => Work::Done(false),
+        };
+    }
+
+    /// Simulates what the controller does during the work, and copies the plan after that.
+    fn look(&mut self, controller: &Controller<N>) -> Result<(), Error> {
+        let rest = controller.plan.get(controller.next..).unwrap_or_default();
+        // The first step is the one that it takes now.
+        let steps = once(&controller.last).chain(rest).chain(repeat(&Knot::EMPTY));
+        let mut model = Pendulum::<Arithmetic>::new(self.params, controller.state)?;
+        let ahead = self.ahead as usize;
+        for step in steps.clone().take(ahead) {
+            model.step(saturate(step.follow(model.state()), self.limit))?;
+        }
+        self.start = model.state();
+        self.begin = self.before.wrapping_add(self.ahead).wrapping_sub(1);
+        self.plan.iter_mut().zip(steps.skip(ahead)).for_each(|(place, step)| *place = *step);
+        Ok(())
+    }
+
+    /// A slice: computes for some milliseconds to tens of them. Without an
+    /// [exchange](Self::exchange) before it does nothing.
+    pub fn work(&mut self) {
+        match self.work {
+            // Parameters that no plan can have keep the model before.
+            Work::Model => {
+                let params = of_decisions(&self.estimated, self.ticks);
+                if let Ok(planner) = Planner::new(params, PLANNED * self.limit) {
+                    (self.planner, self.params) = (planner, params);
+                }
+            }
+            Work::Plan => {
+                let improved = self.planner.improve(self.start, ITERATIONS, &mut self.plan);
+                self.work = Work::Done(improved.is_ok());
+            }
+            Work::Done(_) | Work::Due(_) => {}
+        }
+    }
+}
+
+/// Parameters whose steps are those of decisions.
+fn of_decisions(params: &Params<f32>, ticks: f32) -> Params<f32> {
+    Params { dt: params.dt * ticks, ..*params }
+}

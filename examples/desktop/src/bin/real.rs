@@ -1,0 +1,133 @@
+//! Swings a simulated real acrobot up and holds it, as firmware would: from encoder counts, with a
+//! wrong model, and plans that are made while it moves.
+//!
+//! ```text
+//! cargo run --release -p desktop --bin real                  # seeds from 0
+//! cargo run --release -p desktop --bin real -- --first 20    # other seeds
+//! ```
+//!
+//! After 10 s a push changes both velocities by up to 1 rad/s, and after 20 s by up to 6 rad/s. The
+//! table has how many acrobots are upright in the last second before each push and before the end,
+//! and the times that they needed.
+
+use std::f64::consts::TAU;
+
+use acrobot::Params;
+use acrobot::Portable;
+use acrobot::arithmetic::Damped;
+use acrobot::control::{ControlError, Evidence, Sample};
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::physics::Joints;
+use clap::Parser;
+use mpc::{Controller, Replanner, Settings};
+use rayon::prelude::*;
+
+type Machine = mpc::Machine<Damped<Portable>>;
+
+/// Ticks of 2 ms between two pushes.
+const TICKS: u32 = 5000;
+/// An acrobot is upright within these angles, rad, and for so many ticks.
+const UPRIGHT: f64 = 0.1;
+const HELD: u32 = 500;
+/// What the pushes change, rad/s.
+const PUSHES: [f64; 3] = [1.0, 6.0, 0.0];
+
+/// Rehearses the control of a real acrobot.
+#[derive(Parser)]
+struct Options {
+    /// Acrobots to control with each model.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..))]
+    count: u64,
+    /// The first seed.
+    #[arg(long, default_value_t = 0)]
+    first: u64,
+    /// Ticks of 2 ms that a slice of planning takes, such as 12 to 20 on an STM32F4.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    slice: u32,
+}
+
+/// What the controller believes of a machine, given the true parameters.
+type Model = fn(Params, u64) -> Result<Params, ControlError>;
+
+/// The motion of a machine between pushes: seconds until upright, if it then stays there.
+type Motion = [Option<f64>; PUSHES.len()];
+
+fn without_friction(truth: Params, _: u64) -> Result<Params, ControlError> {
+    Ok(Params { friction: Joints::default(), coulomb: Joints::default(), ..truth })
+}
+
+/// Shakes a machine for 10 s with up to 3 N m, and identifies it from what the encoders counted.
+fn identified(truth: Params, seed: u64) -> Result<Params, ControlError> {
+    let (mut machine, mut rng) = (Machine::new(seed)?, Pcg64::new(seed));
+    let (mut recording, mut torque, mut left) = (Vec::new(), 0.0, 0.0);
+    let mut angles = [0.0; 2];
+    for _ in 0..TICKS {
+        if left <= 0.0 {
+            (torque, left) = (uniform(&mut rng, -3.0, 3.0) as f32, uniform(&mut rng, 0.05, 0.4));
+        }
+        left -= truth.dt;
+        // A real encoder counts on after a turn.
+        for (angle, count) in angles.iter_mut().zip(machine.counts()) {
+            let turns = f64::from(count) / 4096.0 - *angle / TAU;
+            *angle += (turns - turns.round()) * TAU;
+        }
+        recording.push(Sample { angles, torques: [0.0, torque.into()] });
+        machine.step(torque)?;
+    }
+    let mut evidence = Evidence::NONE;
+    evidence.add(&recording, truth.dt, truth.gravity, 2, 250)?;
+    // Masses, inertias and friction as drawn do not count, except for centres of mass.
+    Ok(evidence.solve().params(Params { mass1: 1.0, mass2: 1.0, ..truth })?)
+}
+
+fn control(seed: u64, slice: u32, model: Model) -> Result<Motion, ControlError> {
+    let mut machine = Machine::new(seed)?;
+    let params = model(machine.params(), seed)?.cast();
+    let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
+    let mut controller = Controller::<100>::new(settings)?;
+    let mut replanner = Replanner::new(settings)?;
+    let mut motion = Motion::default();
+    for (time, push) in motion.iter_mut().zip(PUSHES) {
+        let mut upright = 0;
+        for tick in 0..TICKS {
+            let torque = controller.tick(machine.counts())?;
+            if tick % slice == 0 {
+                replanner.exchange(&mut controller);
+                replanner.work();
+            }
+            machine.step(torque)?;
+            if machine.lean() > UPRIGHT {
+                upright = tick + 1;
+            }
+        }
+        *time = (upright + HELD <= TICKS).then_some(f64::from(upright) * 0.002);
+        machine.push(push)?;
+    }
+    Ok(motion)
+}
+
+fn main() -> anyhow::Result<()> {
+    let Options { count, first, slice } = Options::parse();
+    println!("| model | upright of {count} | after a push of 1 rad/s | of 6 rad/s |");
+    println!("|---|---|---|---|");
+    let models: [(&str, Model); 3] = [
+        ("the true one", |truth, _| Ok(truth)),
+        ("identified", identified),
+        ("without friction", without_friction),
+    ];
+    for (name, model) in models {
+        let seeds = (first..first + count).into_par_iter();
+        let motions = seeds.map(|seed| control(seed, slice, model));
+        let motions: Vec<Motion> = motions.collect::<Result<_, _>>()?;
+        print!("| {name} |");
+        for part in 0..PUSHES.len() {
+            let mut times: Vec<f64> = motions.iter().filter_map(|motion| motion[part]).collect();
+            times.sort_by(f64::total_cmp);
+            let (held, latest) = (times.len(), times.last().unwrap_or(&f64::NAN));
+            let median = times.get(held / 2).unwrap_or(&f64::NAN);
+            print!(" {held}, in {median:.1} s, at most {latest:.1} s |");
+        }
+        println!();
+    }
+    Ok(())
+}
