@@ -19,6 +19,7 @@ export function levelOf(torque, limit) {
 
 export class Game {
   acrobot = new Acrobot();
+  #shown = new Acrobot();
   seed;
   params;
   /** The state in which the inputs begin, or null for the seed's initial state. */
@@ -60,17 +61,11 @@ export class Game {
     this.params = params;
   }
 
-  /** Steps with a level of the motor. A push changes the velocities before the step. */
+  /** Steps with a level of the motor, and a push in its units or null. */
   step(level, push = null) {
     if (this.end !== null) return;
-    const { acrobot } = this;
-    if (push !== null) {
-      const { theta1, theta2, dtheta1, dtheta2 } = acrobot.state;
-      const [more1, more2] = push.map((units) => units / UNITS);
-      acrobot.state = { theta1, theta2, dtheta1: dtheta1 + more1, dtheta2: dtheta2 + more2 };
-    }
     const torque = torqueOf(level, this.params.torque);
-    const { terminated, truncated } = acrobot.stepTorque(torque);
+    const { terminated, truncated } = apply(this.acrobot, torque, push);
     this.levels.push(level);
     this.pushes.push(push);
     this.#rows.push(this.#row(torque));
@@ -116,28 +111,18 @@ export class Game {
   }
 
   /**
-   * Draws the acrobot at a part of its last step, from 0 to 1, because a display shows more frames
-   * than the physics takes steps.
+   * The acrobot at a part of its last step, from 0 to 1, because a display shows more frames than
+   * the physics takes steps.
    */
-  draw(context, part, colors) {
-    const { state } = this.acrobot;
-    const { theta1, theta2 } = this.between(part);
-    this.acrobot.state = { ...state, theta1, theta2 };
-    this.acrobot.draw(context, { colors });
-    this.acrobot.state = state;
-  }
-
-  /** The angles at a part of the last step. */
   between(part) {
-    const after = this.numbers;
-    const before = this.#rows.at(-2) ?? after;
-    const { dt } = this.params;
-    const push = this.pushes.at(-1) ?? [0, 0];
-    const angle = (i) => {
-      const velocity = before[i + 2] + push[i] / UNITS;
-      return angleBetween(before[i], after[i], velocity * dt, after[i + 2] * dt, part);
-    };
-    return { theta1: angle(0), theta2: angle(1) };
+    const before = this.#rows.at(-2);
+    const dt = Math.fround(part * this.params.dt);
+    if (part === 1 || dt === 0 || before === undefined) return this.acrobot;
+    const [theta1, theta2, dtheta1, dtheta2] = before;
+    this.#shown.setParams({ ...this.acrobot.params, dt });
+    this.#shown.state = { theta1, theta2, dtheta1, dtheta2 };
+    apply(this.#shown, this.numbers[6], this.pushes.at(-1) ?? null);
+    return this.#shown;
   }
 
   /** One of these numbers, of each of the last states. */
@@ -146,17 +131,12 @@ export class Game {
   }
 }
 
-/**
- * Interpolates between the angles `a` and `b` by a cubic Hermite polynomial, with the velocities at
- * the start and at the end of a step in radians a step.
- */
-function angleBetween(a, b, start, end, part) {
-  const mean = (start + end) / 2;
-  // Angles are modulo 2π: take the turns closest to those at the mean velocity.
-  const turned = b - a + 2 * Math.PI * Math.round((mean - (b - a)) / (2 * Math.PI));
-  const [part2, part3] = [part ** 2, part ** 3];
-  const bend = start * (part3 - 2 * part2 + part) + end * (part3 - part2);
-  const angle = a + turned * (3 * part2 - 2 * part3) + bend;
-  // With a huge dt there are too many turns to show.
-  return Math.abs(angle) < 1e6 ? angle : b;
+/** Steps an acrobot with a torque. A push changes the velocities before the step. */
+function apply(acrobot, torque, push) {
+  if (push !== null) {
+    const { theta1, theta2, dtheta1, dtheta2 } = acrobot.state;
+    const [more1, more2] = push.map((units) => units / UNITS);
+    acrobot.state = { theta1, theta2, dtheta1: dtheta1 + more1, dtheta2: dtheta2 + more2 };
+  }
+  return acrobot.stepTorque(torque);
 }

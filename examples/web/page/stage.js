@@ -27,7 +27,8 @@ export function drawStage(game, part, path, pulled) {
   const faded = `${torque}${share.toString(16).padStart(2, "0")}`;
   const context = picture.getContext("2d");
   const colors = { background: "transparent", target, link, joint, torque: faded };
-  game.draw(context, part, colors);
+  const acrobot = game.between(part);
+  acrobot.draw(context, { colors });
 
   const { length1, length2 } = game.params;
   const metre = side / 2 / (length1 + length2 + 0.2);
@@ -41,10 +42,10 @@ export function drawStage(game, part, path, pulled) {
     for (const point of points) context.lineTo(...at(point));
     context.stroke();
   };
-  const shown = game.between(part);
-  if (path.length > 0) line([placesOf(shown, game.params)[1], ...path], accent, [1, 2]);
+  const { state } = acrobot;
+  if (path.length > 0) line([placesOf(state, game.params)[1], ...path], accent, [1, 2]);
   if (pulled !== null) {
-    const from = placeOf(pulled.point, shown, game.params);
+    const from = placeOf(pulled.point, state, game.params);
     line([from, pulled.target], second, []);
     context.fillStyle = second;
     context.beginPath();
