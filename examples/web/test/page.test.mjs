@@ -7,11 +7,10 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 import { Learner } from "../dist/acrobot-rs/policies.js";
-import { actionsOf } from "../dist/link.js";
 import { ACTIONS, trace } from "./native.mjs";
 import {
-  downloaded, folder, linked, onPage, open, paused, press, says, shownBits, shows, showsBits,
-  stepped, steps, text,
+  downloaded, folder, onPage, open, paused, press, says, shownBits, shows, showsBits, stepped,
+  steps, text,
 } from "./player.mjs";
 
 onPage("the page loads and plays a policy", {}, async (page) => {
@@ -33,20 +32,6 @@ onPage("keys apply torque, and states are bit-identical to native", {}, async (p
   await showsBits(page, trace("42", ACTIONS).at(-1));
   await shows(page, "#step", String(ACTIONS.length));
   await shows(page, "#return", `−${ACTIONS.length}`);
-
-  // The page decides when it steps, so the actions are read from its link.
-  await page.keyboard.press("Space");
-  await page.keyboard.down("ArrowRight");
-  await page.waitForTimeout(700);
-  await page.keyboard.up("ArrowRight");
-  await page.keyboard.down("ArrowLeft");
-  await page.waitForTimeout(500);
-  await page.keyboard.up("ArrowLeft");
-  await page.keyboard.press("Space");
-  const actions = actionsOf(await linked(page));
-  const played = actions.slice(ACTIONS.length);
-  assert.ok(played.includes(2) && played.includes(0), `${played}`);
-  await showsBits(page, trace("42", actions).at(-1));
 });
 
 onPage("seeds give Gymnasium's initial states, others are rejected", {}, async (page) => {
