@@ -13,7 +13,6 @@ function observation() {
   return to;
 }
 
-/** What a step returns. */
 function results(flags) {
   const [terminated, truncated] = [(flags & 1) !== 0, (flags & 2) !== 0];
   return { observation: observation(), reward: numbers()[6], terminated, truncated };

@@ -25,11 +25,9 @@ const ARRAYS = {
 
 export class Batch extends Environment {
   #settings;
-  /** The addresses of the arrays. */
   #addresses;
-  /** Views of the arrays, which end when the module's memory grows. */
+  /** They end when the module's memory grows. */
   #views = {};
-  /** Copies of the results. */
   #results = {};
   /** Whether states have changed since the observations were written. */
   #stale = false;
@@ -59,7 +57,6 @@ export class Batch extends Environment {
     this.#copyResults();
   }
 
-  /** The view of an array. */
   #view(name) {
     if (!this.#views[name]?.length) {
       const [Type, width] = ARRAYS[name];

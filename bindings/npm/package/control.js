@@ -47,7 +47,7 @@ function acceptAll(kind, given) {
   throw new RangeError(MESSAGES[kind - 4](value, camelCase(text(1)), other));
 }
 
-/** Calls a function of the module for a pendulum. Returns the matrix and the vector it writes. */
+/** Returns the matrix and the vector that a function of the module writes. */
 function compute(name, state, torque, params, option, weights = []) {
   const names = parameters();
   const given = readSlots("params", params, names);

@@ -97,7 +97,6 @@ export function readState(kept, index) {
   return Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
 }
 
-/** Draws acrobot `index` with the torque of its last step. */
 export function drawOne(kept, index, context, options) {
   const params = readParams(kept, index);
   const state = readState(kept, index);
@@ -121,7 +120,7 @@ export function readParams(kept, index) {
   return Object.freeze({ ...params, dynamics: DYNAMICS[params.dynamics] });
 }
 
-/** Changes the parameters of all acrobots, or of acrobot `index`. */
+/** Of all acrobots, or of acrobot `index`. */
 export function changeParams(kept, changes, index) {
   const names = parameters();
   const given = readSlots("params", changes, names);
@@ -132,7 +131,6 @@ export function changeParams(kept, changes, index) {
 const noMemory = () =>
   new RangeError("WebAssembly's memory of at most 4 GiB has no room for the snapshot");
 
-/** Why the module rejects a snapshot. */
 const REASONS = ["another checksum", "another class or version", "invalid contents"];
 
 /** Loads a snapshot, or frees what is being made and throws. */

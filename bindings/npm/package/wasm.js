@@ -58,7 +58,6 @@ function words() {
 export const integers = () => words()[0];
 export const numbers = () => words()[1];
 
-/** A part of the module's memory. */
 export const bytes = (address, length) => new Uint8Array(wasm().memory.buffer, address, length);
 
 /** The text whose address and length are in the words from `at` on. */
@@ -91,7 +90,6 @@ export function copied(what, given) {
   return new Uint8Array(given);
 }
 
-/** A value in an error message. */
 function shown(value) {
   if (typeof value === "string") return JSON.stringify(value);
   return Object(value) === value ? tagOf(value) : String(value);

@@ -29,7 +29,6 @@ enum Tasks {
 }
 
 impl Tasks {
-    /// JavaScript's number of the task.
     fn number(&self) -> u32 {
         match self {
             Self::Acrobot(_) => 0,
@@ -39,7 +38,6 @@ impl Tasks {
     }
 }
 
-/// Does something with the batch, whatever its task.
 macro_rules! with_task {
     ($tasks:expr, $batch:ident => $result:expr) => {
         match $tasks {
@@ -189,7 +187,6 @@ pub extern "C" fn reset(many: &mut Many, words: usize) {
     observe(many);
 }
 
-/// Computes the observations.
 #[unsafe(no_mangle)]
 pub extern "C" fn observe(many: &mut Many) {
     let _ = with_task!(&many.batch, batch => batch.observe(&mut many.observations));
@@ -237,7 +234,7 @@ impl Many {
         self.actions.iter().all(|action| *action <= 2)
     }
 
-    /// Notes the torques of the actions after a change of parameters.
+    /// After a change of parameters.
     fn note_torques(&mut self) {
         with_task!(&self.batch, batch => {
             for (index, torques) in self.torques_of.iter_mut().enumerate() {
@@ -246,7 +243,7 @@ impl Many {
         });
     }
 
-    /// Notes the torques of the actions after resets, which may draw them.
+    /// After resets, which may draw torques.
     fn note_drawn_torques(&mut self) {
         let drawn = with_task!(&self.batch, batch => batch.draws().params().torques);
         if !matches!(drawn, [Draw::Fixed, Draw::Fixed, Draw::Fixed]) {
@@ -254,7 +251,7 @@ impl Many {
         }
     }
 
-    /// Changes parameters of acrobot `index`, or of all without one.
+    /// Of acrobot `index`, or of all without one.
     fn set_params(&mut self, index: Option<usize>, mask: u32) -> Result<(), Error> {
         let indices = index.map_or(0..self.actions.len(), |index| index..index + 1);
         with_task!(&mut self.batch, batch => {

@@ -45,7 +45,6 @@ fn header(of: &'static str, task: u32) -> Header<'static> {
 pub type Writer<'a> = Serializer<Slice<'a>>;
 pub type Reader<'a> = Deserializer<'a, de_flavors::Slice<'a>>;
 
-/// Reads the next value.
 pub fn read<'a, T: Deserialize<'a>>(reader: &mut Reader<'a>) -> Option<T> {
     T::deserialize(reader).ok()
 }
@@ -104,7 +103,6 @@ pub extern "C" fn snapshot_new(len: usize) -> *mut u8 {
     bytes.map_or(ptr::null_mut(), |bytes| bytes.leak().as_mut_ptr())
 }
 
-/// Frees memory for a snapshot.
 #[unsafe(no_mangle)]
 pub extern "C" fn snapshot_free(address: *mut u8, len: usize) {
     // SAFETY: JavaScript has the address from here, with the length.

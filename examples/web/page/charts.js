@@ -5,7 +5,6 @@ import { color, minus, plot, rangeOf } from "./plot.js";
 
 const $ = (id) => document.getElementById(id);
 
-/** A number as text. */
 export const number = (value, digits = 2) => {
   if (!Number.isFinite(value)) return "too large";
   return minus(Math.abs(value) < 1e6 ? value.toFixed(digits) : value.toPrecision(4));

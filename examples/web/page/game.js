@@ -125,7 +125,6 @@ export class Game {
     return this.#shown;
   }
 
-  /** One of these numbers, of each of the last states. */
   column(index) {
     return Array.from(this.#rows, (row) => row[index]);
   }

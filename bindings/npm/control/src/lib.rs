@@ -40,7 +40,6 @@ fn pendulum(mask: u32) -> Result<Pendulum<Damped<Fast>>, ControlError> {
     Ok(Pendulum::new(changed(Params::DEFAULT, mask), state())?)
 }
 
-/// The knot in the words: its state, torque and gain.
 fn knot() -> Knot<f32> {
     let [a, b, c, d, torque, gain @ ..] = numbers::<9>(0);
     let mut knot = Knot::open(torque);
@@ -99,7 +98,6 @@ pub extern "C" fn regulator(mask: u32, torque: f32) -> u32 {
     write_matrix(regulator.map(|Lqr { gain, cost_to_go }| (cost_to_go, gain)))
 }
 
-/// A planner with memory for a plan.
 pub struct Planner {
     planner: control::Planner<Damped<Fast>>,
     knots: Vec<Knot<f32>>,
@@ -158,7 +156,6 @@ pub extern "C" fn resize(planner: &mut Planner, steps: usize) -> bool {
     knots.map(|knots| planner.knots = knots).is_some()
 }
 
-/// Writes a knot of the plan.
 #[unsafe(no_mangle)]
 pub extern "C" fn read_knot(planner: &Planner, step: usize) {
     if let Some(Knot { state, torque, gain: [k1, k2, k3, k4], .. }) = planner.knots.get(step) {
@@ -167,7 +164,6 @@ pub extern "C" fn read_knot(planner: &Planner, step: usize) {
     }
 }
 
-/// Sets a knot of the plan to that in the words.
 #[unsafe(no_mangle)]
 pub extern "C" fn set_knot(planner: &mut Planner, step: usize) {
     if let Some(place) = planner.knots.get_mut(step) {
