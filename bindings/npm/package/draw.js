@@ -27,9 +27,6 @@ export function draw(context, state, params, torque, options = {}) {
   const [{ theta1, theta2 }, { length1, length2 }] = [state, params];
   const reach = length1 + length2 + 0.2;
   const metre = size / 2 / reach;
-  const elbow = [length1 * Math.sin(theta1), -length1 * Math.cos(theta1)];
-  const [sin, cos] = [Math.sin(theta1 + theta2), Math.cos(theta1 + theta2)];
-  const tip = [elbow[0] + length2 * sin, elbow[1] - length2 * cos];
 
   const stroke = (color, width, points) => {
     context.strokeStyle = color;
@@ -37,12 +34,6 @@ export function draw(context, state, params, torque, options = {}) {
     context.beginPath();
     for (const [x, y] of points) context.lineTo(x, y);
     context.stroke();
-  };
-  const joint = ([x, y]) => {
-    context.fillStyle = colors.joint;
-    context.beginPath();
-    context.arc(x, y, 0.1, 0, 2 * Math.PI);
-    context.fill();
   };
 
   context.save();
@@ -53,13 +44,19 @@ export function draw(context, state, params, torque, options = {}) {
   context.translate(size / 2, size / 2);
   context.scale(metre, -metre);
   stroke(colors.target, 1 / metre, [[-reach, 1], [reach, 1]]);
-  stroke(colors.link, 0.2, [[0, 0], elbow]);
-  joint([0, 0]);
-  stroke(colors.link, 0.2, [elbow, tip]);
-  joint(elbow);
+  for (const [angle, length] of [[theta1, length1], [theta2, length2]]) {
+    context.rotate(angle);
+    stroke(colors.link, 0.2, [[0, 0], [0, -length]]);
+    context.fillStyle = colors.joint;
+    context.beginPath();
+    context.arc(0, 0, 0.1, 0, 2 * Math.PI);
+    context.fill();
+    context.translate(0, -length);
+  }
   if (torque !== 0) {
     // Three quarters of a turn around the elbow, open below, with a head at the end.
-    context.translate(...elbow);
+    context.translate(0, length2);
+    context.rotate(-theta1 - theta2);
     context.scale(torque > 0 ? 0.3 : -0.3, 0.3);
     const [start, end] = [-Math.PI / 4, (5 * Math.PI) / 4];
     context.strokeStyle = colors.torque;
