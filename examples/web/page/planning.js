@@ -1,25 +1,15 @@
 // Plans outside the page's thread. It receives the parameters, a torque and a state, and posts a
 // plan, or null, with the milliseconds it took, and the gain −K of the regulator after the plan.
 
-import { Planner } from "./acrobot-rs/control.js";
+import { Planner, regulator } from "./acrobot-rs/control.js";
 
 /** Durations of plans, s: the shortest in which a try succeeds. */
 const HORIZONS = [1.6, 3.2, 6.4, 12.8, 25.6];
 /** The most steps of a plan, so that a tiny time step does not take minutes. */
 const STEPS = 3000;
 const TRIES = 6;
-/** The deviation from upright at which the gain is read, rad and rad/s. */
-const DEVIATION = 0.25;
-
-/** −K, from the torque −K x that follows a plan of no steps. */
-function gainOf(planner) {
-  const nothing = { states: [], torques: [], gains: [] };
-  const upright = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
-  return Object.entries(upright).map(([name, value]) => {
-    const state = { ...upright, [name]: value + DEVIATION };
-    return planner.follow(nothing, 0, state) / DEVIATION;
-  });
-}
+/** The planner's weights. */
+const EYE = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
 
 /** The last request. Those before it are obsolete. */
 let last = null;
@@ -35,7 +25,8 @@ function plan() {
       const steps = Math.min(Math.ceil(seconds / params.dt), STEPS);
       plan ??= planner.plan(start, { steps, tries: TRIES, seed });
     }
-    postMessage({ id, plan, gain: gainOf(planner), duration: performance.now() - began });
+    const duration = performance.now() - began;
+    postMessage({ id, plan, gain: regulator(params, EYE, 1).gain.map((k) => -k), duration });
     planner.free();
   } catch ({ message }) {
     postMessage({ id, error: message });
