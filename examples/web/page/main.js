@@ -270,17 +270,18 @@ function start() {
   });
   const buttons = { pause: toggle, single, reset, next };
   for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
-  $("policy").onchange = ({ target }) => {
+  const select = (policy) => {
     // With Gymnasium's 1 N m a swing-up takes at least 10 s, and a touch is enough for a fall.
-    const isWeak = target.value === "planner" && isSame(game.params, DEFAULTS);
-    choose(target.value);
-    if (isWeak) setPhysics({ ...BALANCE });
+    const isWeak = policy === "planner" && isSame(game.params, DEFAULTS);
+    choose(policy);
+    if (!isWeak) return;
+    setPhysics({ ...BALANCE });
     showParams();
     if (playing) say(player());
   };
+  $("policy").onchange = ({ target }) => select(target.value);
   $("balance").onclick = () => {
-    $("policy").value = "planner";
-    $("policy").dispatchEvent(new Event("change"));
+    select("planner");
     if (!playing) play();
   };
   // After a click. Who uses the keyboard may go on with ↑ and ↓.
