@@ -68,8 +68,8 @@ export function decodeRun(hash) {
     return list;
   };
   const integers = (name, largest, count) => {
-    const isValid = (number, i) =>
-      Number.isInteger(number) && Math.abs(number) <= largest && !Object.is(number, -0) && i < count;
+    const isInteger = (number) => Number.isInteger(number) && !Object.is(number, -0);
+    const isValid = (number, i) => isInteger(number) && Math.abs(number) <= largest && i < count;
     return listOf(name, `${count} integers up to ±${largest}`, isValid);
   };
   const torques = integers("torques", FULL, LIMIT);
