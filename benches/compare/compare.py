@@ -1,10 +1,5 @@
 """Measures this crate and other Acrobots from PyPI and crates.io, as README.md says.
 
-    python3 compare.py                 prints the table
-    python3 compare.py --update        also writes it into docs/benchmarks.md
-    python3 compare.py --quick         one short round, to try it
-    python3 compare.py NAME SECONDS    plays one Python package, which is installed
-
 Each implementation plays in its own process: this file in the virtual environment of a Python
 package, or `src/main.rs`.
 """

@@ -1,10 +1,6 @@
 """Measures what the crate costs on microcontrollers, and compares it with the tables in
 `docs/embedded-figures.md`.
 
-    python3 figures.py             prints every figure, and fails if one differs from the page
-    python3 figures.py --update    writes the tables
-    python3 figures.py cores       only this table; --help names all
-
 The firmware counts instructions, stack and RAM. Flash is that of `minimal` minus that of the same
 firmware without an acrobot, or without an addition to it. `cycles.py` estimates the cycles per
 instruction. Each figure is the same in every run, the estimates too.
@@ -246,7 +242,7 @@ def written(table, figures):
 
 def main():
     names = ", ".join(TABLES)
-    parser = argparse.ArgumentParser(description="Measures what the crate costs.")
+    parser = argparse.ArgumentParser(description="Compares what the crate costs with the page.")
     parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"one of {names}; default: all")
     parser.add_argument("--update", action="store_true", help="write the tables into the page")
     options = parser.parse_args()

@@ -9,7 +9,7 @@ use std::path::Path;
 use acrobot::numpy::SeedSequence;
 use acrobot::{Action, State};
 use anyhow::Context;
-use learners::{QLambda, evaluation, play};
+use learners::{Budget, QLambda, evaluation, play, training};
 
 /// The bang-bang policy: torque against θ̇1, in rad/s.
 pub fn bang_bang(dtheta1: impl Into<f64>) -> Action {
@@ -41,6 +41,24 @@ pub fn load<const S: usize, const T: usize>(
     let read = file.take(MOST).read_to_end(&mut bytes);
     read.with_context(named)?;
     learner.load(&bytes).with_context(named)
+}
+
+/// Learns for a budget. Returns the return of each episode.
+pub fn train<const S: usize, const T: usize>(
+    learner: &mut QLambda<S, T>,
+    budget: Budget,
+    seed: SeedSequence,
+) -> Vec<f32> {
+    let mut env = training(seed);
+    let (mut returns, mut steps) = (Vec::new(), 0);
+    while match budget {
+        Budget::Episodes(all) => (returns.len() as u32) < all,
+        Budget::Steps(all) => steps < all,
+    } {
+        returns.push(learner.learn(&mut env));
+        steps += env.elapsed_steps();
+    }
+    returns
 }
 
 /// The returns of a policy.

@@ -1,17 +1,17 @@
 //! The mean returns of policies from the same initial states.
 
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 use anyhow::Context;
-use desktop::bang_bang;
+use desktop::{bang_bang, train};
 use indicatif::ProgressIterator;
-use learners::{Budget, Memory, Memory16, Memory64, QLambda, training};
+use learners::{Budget, Memory, Memory16, Memory64, QLambda};
 
 use crate::{SEEDS, bound, initial, mean_return};
 
 /// The seed of learning and of random actions.
 const SEED: u64 = 42;
-const STEPS: u32 = 1_000_000;
+const BUDGET: Budget = Budget::Steps(1_000_000);
 
 pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
     println!("| policy | mean return |\n|---|---|");
@@ -40,13 +40,8 @@ pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
 fn learnt<const S: usize, const T: usize, const N: usize>(
     memory: &mut Memory<S, T, N>,
 ) -> QLambda<'_, S, T> {
-    let mut learner = QLambda::new(Budget::Steps(STEPS), memory);
-    let mut env = training(SeedSequence::new(SEED));
-    let mut steps = 0;
-    while steps < STEPS {
-        learner.learn(&mut env);
-        steps += env.elapsed_steps();
-    }
+    let mut learner = QLambda::new(BUDGET, memory);
+    train(&mut learner, BUDGET, SEED.into());
     learner
 }
 

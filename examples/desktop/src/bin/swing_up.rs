@@ -20,8 +20,8 @@ use std::time::Instant;
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, REWARD_THRESHOLD};
 use clap::Parser;
-use desktop::{Returns, animation, bang_bang, evaluate, load, write};
-use learners::{Budget, Memory, Memory16, Memory32, Memory64, QLambda, evaluation, play, training};
+use desktop::{Returns, animation, bang_bang, evaluate, load, train, write};
+use learners::{Budget, Memory, Memory16, Memory32, Memory64, QLambda, evaluation, play};
 
 /// Learns to swing up, compares the learnt policy with two simple ones, and draws a greedy episode.
 #[derive(Parser)]
@@ -80,7 +80,7 @@ fn run<const S: usize, const T: usize, const N: usize>(
     }
 
     let start = Instant::now();
-    let returns = train(&mut learner, options);
+    let returns = train(&mut learner, options.budget(), options.seed.clone());
     let seconds = start.elapsed().as_secs_f32();
     if let Some(path) = &options.save {
         let bytes: Vec<u8> = learner.save().collect();
@@ -127,21 +127,4 @@ fn draw<const S: usize, const T: usize>(
     write(Path::new("swing_up.svg"), animation::svg(&states, animation::DELAY))?;
     println!("swing_up.svg: a greedy episode, {} steps", env.elapsed_steps());
     Ok(())
-}
-
-/// Returns the return of each episode.
-fn train<const S: usize, const T: usize>(
-    learner: &mut QLambda<S, T>,
-    options: &Options,
-) -> Vec<f32> {
-    let mut env = training(options.seed.clone());
-    let (mut returns, mut steps) = (Vec::new(), 0);
-    while match options.budget() {
-        Budget::Episodes(all) => (returns.len() as u32) < all,
-        Budget::Steps(all) => steps < all,
-    } {
-        returns.push(learner.learn(&mut env));
-        steps += env.elapsed_steps();
-    }
-    returns
 }
