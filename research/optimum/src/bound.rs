@@ -27,9 +27,8 @@ const SLACK: f64 = 1e-6;
 const MOST: f64 = 30.0;
 
 /// θ1, θ1 + θ2 and their velocities, rad and rad/s, of all states up to the energy `MOST`, except
-/// mirror images and whole turns. Outside there is more kinetic energy: at least (1.125 − 0.1) 5.5²
-/// = 31.0 J or (0.625 − 0.0556) 7.5² = 32.0 J. Within, no velocity reaches its bound. These numbers
-/// are multiples of 1/4, so halving them is exact.
+/// mirror images and whole turns. Outside there is more kinetic energy: docs/optimum.md. These
+/// numbers are multiples of 1/4, so halving them is exact.
 const STATES: [[f64; 2]; 4] = [[-3.25, 3.25], [-3.25, 3.25], [0.0, 5.5], [-7.5, 7.5]];
 
 /// θ1, θ1 + θ2 and their velocities.
@@ -292,7 +291,7 @@ mod tests {
     /// Steps from here reach the target by their height alone.
     const HIGHEST: [f64; 4] = [-1.40517, 3.00841, -1.44586, 0.76542];
 
-    /// Near the states that the program certificate.py finds to be nearest to a contradiction.
+    /// Near the states that are nearest to a contradiction, of ten million and of climbs from them.
     #[test]
     fn bounds_that_are_too_tight_are_not_proved() {
         let proves = |at_target, unit| {
