@@ -11,11 +11,6 @@ use anyhow::{Context, ensure};
 use crate::{SEEDS, initial};
 
 const SIGNS: [char; 3] = ['-', '0', '+'];
-const HEAD: &str = "\
-# The fewest known steps to the goal: line s has the actions after Gymnasium's \
-reset(seed=s), counted from 0.
-# - 0 + are torques of -1, 0 and 1 N m. Made by: cargo run --release -p optimum -- search
-";
 
 /// The sequences of a file, one for each initial state, each checked.
 pub fn load(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
@@ -40,15 +35,6 @@ fn parse(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
         );
     }
     Ok(sequences)
-}
-
-pub fn text(sequences: &[Vec<Action>]) -> String {
-    let mut text = HEAD.to_string();
-    for sequence in sequences {
-        text.extend(sequence.iter().map(|&action| SIGNS[action as usize]));
-        text.push('\n');
-    }
-    text
 }
 
 /// Whether the last action reaches the goal, and none before.

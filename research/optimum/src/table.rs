@@ -4,7 +4,6 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 use anyhow::Context;
 use desktop::{bang_bang, train};
-use indicatif::ProgressIterator;
 use learners::{Budget, Memory, Memory16, Memory64, QLambda};
 
 use crate::{SEEDS, bound, initial, mean_return};
@@ -49,7 +48,7 @@ fn learnt<const S: usize, const T: usize, const N: usize>(
 fn mean(mut policy: impl FnMut(&State<f32>) -> Action) -> f64 {
     let mut env = TimeLimit::of(Acrobot::<Fast>::new(0));
     let mut sum = 0.0;
-    for seed in (0..SEEDS).progress() {
+    for seed in 0..SEEDS {
         env.reset_with_seed(seed.into());
         loop {
             let step = env.step(policy(&env.state()));
