@@ -2,7 +2,7 @@
 // field shows why a value is rejected.
 
 import { minus } from "./plot.js";
-import { BALANCE, DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
+import { DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -40,10 +40,8 @@ export function parametersPanel(get, set) {
       const isNew = !Object.is(value, get()[name]);
       attempt(text, reason, () => isNew && set({ ...get(), [name]: value }));
     };
-    slider.oninput = () => {
-      text.value = slider.value;
-      change();
-    };
+    slider.oninput = () => (text.value = slider.value);
+    slider.onchange = change;
     // So that ← and → are the torque again.
     slider.onpointerup = () => slider.blur();
     text.oninput = () => {
@@ -60,11 +58,9 @@ export function parametersPanel(get, set) {
     fields.forEach((show) => show());
   };
   $("dynamics").onchange = ({ target }) => set({ ...get(), dynamics: target.value });
-  for (const [id, preset] of [["defaults", DEFAULTS], ["strong", BALANCE]]) {
-    $(id).onclick = () => {
-      set({ ...preset });
-      show();
-    };
-  }
+  $("defaults").onclick = () => {
+    set({ ...DEFAULTS });
+    show();
+  };
   return show;
 }
