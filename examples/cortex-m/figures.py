@@ -190,21 +190,13 @@ def sizes(arithmetics, **options):
     return [(arithmetic, size) for arithmetic, _, size in minimal(arithmetics, **options)]
 
 
-def measure_firmware(name, column):
+def firmware(name, column):
     # Its messages name source files by their paths, whose length would count.
     home = os.environ.get("CARGO_HOME", pathlib.Path.home() / ".cargo")
     rustflags = f"--remap-path-prefix={home}="
     return printed(name, rustflags=rustflags) | {
         (column, "flash_bytes"): flash(image(name, rustflags=rustflags))
     }
-
-
-def measure_balance():
-    return measure_firmware("balance", "10_Nm")
-
-
-def measure_real():
-    return measure_firmware("real", "real")
 
 
 def measure_additions():
@@ -221,9 +213,9 @@ Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", ARITHMETICS, ROWS, measure_m4f),
     "additions": Table(ADDED, {"fast": "bytes"}, ADDITIONS, measure_additions),
-    "balance": Table("largest torque", LIMITS, BALANCE, measure_balance),
+    "balance": Table("largest torque", LIMITS, BALANCE, lambda: firmware("balance", "10_Nm")),
     "control": Table(UPRIGHT, CONTROLLED, CONTROL, lambda: printed("bench")),
-    "real": Table("a real acrobot", {"real": "6 N m"}, REAL, measure_real),
+    "real": Table("a real acrobot", {"real": "6 N m"}, REAL, lambda: firmware("real", "real")),
     "cores": Table("instructions per step", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(steps)),
     "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: of_cores(stacks)),
     "sizes": Table("bytes of flash", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(sizes)),

@@ -1,4 +1,4 @@
-//! The function P of bound.rs, written by certificate.py.
+//! The function P of bound.rs, the solution of a linear program.
 
 /// P of the target.
 pub const AT_TARGET: f64 = 48.6593;
