@@ -1,7 +1,7 @@
 """Costs by RealAIGym's own code: of the test in realaigym/score.rs, and of trajectories.
 
 git clone https://github.com/dfki-ric-underactuated-lab/double_pendulum
-python realaigym_scores.py double_pendulum V1.csv V2.csv V3_100.csv
+python realaigym_scores.py double_pendulum V1.csv V2.csv V3_200.csv
 """
 
 import sys

@@ -26,16 +26,13 @@ struct Options {
     /// Tries of each plan.
     #[arg(long, default_value_t = 128, value_parser = value_parser!(u32).range(1..))]
     tries: u32,
-    /// After resets as many tries as fit into this time instead.
-    #[arg(long, value_name = "MS")]
-    time: Option<u64>,
     /// A folder for the trajectories.
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
 }
 
 fn main() -> anyhow::Result<()> {
-    let Options { tries, time, out } = Options::parse();
+    let Options { tries, out } = Options::parse();
     let save = |name: String, robot: &robot::Robot| match &out {
         Some(folder) => robot.save(&folder.join(name)),
         None => Ok(()),
@@ -59,7 +56,7 @@ fn main() -> anyhow::Result<()> {
     }
     let (mut sum, mut longest) = (0.0, Duration::ZERO);
     for seed in SEEDS {
-        let (robot, took) = uptime::play(seed, tries, time.map(Duration::from_millis))?;
+        let (robot, took) = uptime::play(seed, tries)?;
         let costs = costs(task::C1, &robot.rows)?;
         print(&format!("Planner, seed {seed}"), Version::V3, costs);
         (sum, longest) = (sum + Version::V3.score(costs), longest.max(took));

@@ -20,9 +20,9 @@ const PLANNING: usize = 50;
 const EVERY: usize = 5;
 const RESETS: usize = 15;
 
-/// Plays with the resets of a seed. Each plan has so many tries, or as many as a time allows.
-/// Returns the longest time of a plan, too.
-pub fn play(seed: u64, tries: u32, time: Option<Duration>) -> anyhow::Result<(Robot, Duration)> {
+/// Plays with the resets of a seed, and so many tries of each plan. Returns the longest time of a
+/// plan, too.
+pub fn play(seed: u64, tries: u32) -> anyhow::Result<(Robot, Duration)> {
     let params: Params<f32> = Params { dt: EVERY as f64 * C1.dt, ..C1 }.cast();
     let cost = Cost { torque: 4e-3, arrival: 2.0, ..Cost::new(&params) };
     let mut planner = Planner::<Fast>::with_cost(params, LIMIT as f32, cost)?;
@@ -38,7 +38,7 @@ pub fn play(seed: u64, tries: u32, time: Option<Duration>) -> anyhow::Result<(Ro
             (0..PLANNING).try_for_each(|_| ahead.step([0.0; 2]))?;
             let began = Instant::now();
             let state = ahead.pendulum.state().cast();
-            let plan = search(&mut planner, state, &mut rng, tries, time)?;
+            let plan = search(&mut planner, state, &mut rng, tries)?;
             longest = longest.max(began.elapsed());
             let mut torque = 0.0;
             for step in 0.. {
@@ -81,15 +81,10 @@ fn search(
     start: State<f32>,
     rng: &mut Pcg64,
     tries: u32,
-    time: Option<Duration>,
 ) -> anyhow::Result<Vec<Knot<f32>>> {
     const SIDE: u32 = 32;
-    let (began, mut tried, mut best) = (Instant::now(), 0, (f64::INFINITY, Vec::new()));
-    while match time {
-        Some(time) => began.elapsed() * (tried + SIDE) < time * tried.max(1),
-        None => tried < tries,
-    } {
-        tried += SIDE;
+    let mut best = (f64::INFINITY, Vec::new());
+    for _ in 0..tries.div_ceil(SIDE) {
         for plan in plans(planner, start, rng, 60.0, SIDE)? {
             let end = plan.1.last().map(|knot| knot.state);
             if plan.0 < best.0 && end.is_some_and(|end| planner.catches(end)) {
