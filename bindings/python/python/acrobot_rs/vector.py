@@ -36,7 +36,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     Environment ``i`` draws from the ``i``-th child of the seed,
     ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
 
-    A parameter has one value for all environments, a list or an array with one for each, or an
+    A parameter has one value for all environments, a list, tuple or array with one for each, or an
     :class:`acrobot_rs.Uniform`, :class:`acrobot_rs.LogUniform` or :class:`acrobot_rs.Normal`, from
     which each reset draws. Reading it gives what was set, and :meth:`get_parameter` what each
     environment has.
@@ -77,8 +77,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
                 ``SyncVectorEnv``, bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are.
             threads: The threads that compute a step; ``None``: as many as the process has cores.
                 They help above 16,384 environments, or 1,024 in ``float64``.
-            float64: Whether to compute in ``float64``, with correctly rounded sines. Steps take
-                longer.
+            float64: Whether to compute in ``float64``, which takes longer.
             **parameters: Parameters, for example ``LINK_MASS_1=2.0``.
         """
         if threads is None:
@@ -148,12 +147,12 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """Begin an episode in each environment.
 
         Args:
-            seed: An integer of at least 0 with at most 4,300 digits; with ``gymnasium_episodes``,
-                ``seed + i`` seeds environment ``i``. Or a list with an integer or ``None`` for each
-                environment. With ``None`` streams continue.
-            options: As in a single environment, and ``"reset_mask"``: an array of ``bool``;
-                environments whose element is false are neither seeded nor reset. ``"state"`` may
-                have the shape ``(num_envs, 4)``. Autoresets ignore all options.
+            seed: An integer of at least 0; with ``gymnasium_episodes``, ``seed + i`` seeds
+                environment ``i``. Or a list with an integer or ``None`` for each environment. With
+                ``None`` streams continue.
+            options: As in a single environment, and ``"reset_mask"``: an array of ``bool``, true
+                for environments to seed and reset. ``"state"`` may have the shape
+                ``(num_envs, 4)``. Autoresets ignore all options.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and empty infos.
@@ -230,10 +229,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         return read_only(self._native.elapsed())
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """The value of an attribute for each environment, or the results of its method ``render``.
-
-        The error for an unknown name, an ``AttributeError``, lists the attributes.
-        """
+        """The value of an attribute for each environment, or what its method ``render`` returns."""
         known = (*_ATTRIBUTES, *self._NAMES)
         if name not in known:
             they_have = f"they have {', '.join(known)}"
@@ -260,11 +256,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         return rows if is_row else rows[:, 0]
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Set a parameter or ``"state"``.
-
-        ``values`` is one value for all environments, or a list, tuple or array with a value for
-        each. A parameter can also be drawn, for example by an :class:`acrobot_rs.Uniform`.
-        """
+        """Set a parameter or ``"state"``, as an assignment does."""
         setattr(self, name, values)
 
     def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
