@@ -120,8 +120,8 @@ impl<const N: usize> Replanner<N> {
         Ok(())
     }
 
-    /// A slice: computes for some milliseconds to tens of them. Without an
-    /// [exchange](Self::exchange) before it does nothing.
+    /// A slice: computes for some milliseconds to tens of them. Call it once after each
+    /// [exchange](Self::exchange).
     pub fn work(&mut self) {
         match self.work {
             // Parameters that no plan can have keep the model before.
