@@ -20,7 +20,6 @@ pub mod tasks {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/balance.txt")]
-#[doc = include_str!("../docs/costs.txt")]
 #[doc = include_str!("../docs/control.md")]
 pub mod control {}
 

@@ -77,7 +77,8 @@ fn ten_seconds_tell_the_inertias() {
     friction.sort_by(f64::total_cmp);
     println!("inertias {worst:.4?}, friction {friction:.3?}");
     let part = |errors: &[f64], percent| errors[errors.len() * percent / 100];
-    assert!(part(&worst, 50) < 0.0025 && part(&worst, 95) < 0.025, "{worst:?}");
+    let [middle, most] = if machines == 20 { [0.002, 0.009] } else { [0.0025, 0.025] };
+    assert!(part(&worst, 50) < middle && part(&worst, 95) < most, "{worst:?}");
     assert!(part(&friction, 50) < 0.05, "{friction:?}");
 }
 
