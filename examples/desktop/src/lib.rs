@@ -21,13 +21,6 @@ pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Defines a picture of a Markdown page as a URL that contains it.
-pub fn data_url(name: &str, svg: &str) -> String {
-    let svg = svg.replace('\n', "").replace(' ', "%20");
-    let svg = svg.replace('"', "'").replace('#', "%23");
-    format!("[{name}]: data:image/svg+xml,{svg}\n")
-}
-
 /// Loads a learner's weights from a file.
 pub fn load<const S: usize, const T: usize>(
     learner: &mut QLambda<S, T>,

@@ -12,7 +12,7 @@ use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 use clap::Parser;
-use desktop::{animation, bang_bang, data_url, write};
+use desktop::{animation, bang_bang, write};
 
 /// Draws an episode as an animated SVG, about three times as fast as real time.
 #[derive(Parser)]
@@ -43,7 +43,8 @@ fn main() -> anyhow::Result<()> {
     };
     let svg = animation::svg(&states, delay);
     if let Some(definition) = &options.definition {
-        write(definition, data_url("balance.svg", &svg))?;
+        let url = svg.replace('\n', "").replace(' ', "%20").replace('"', "'").replace('#', "%23");
+        write(definition, format!("[balance.svg]: data:image/svg+xml,{url}\n"))?;
     }
     write(&options.out, svg)?;
     println!("{}: {} frames", options.out.display(), states.len());
