@@ -13,7 +13,6 @@ import pathlib
 import statistics
 import subprocess
 import sys
-import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/learning.md"
@@ -67,10 +66,7 @@ def row(run, results):
 
 
 def main():
-    begin = time.monotonic()
-    results = measure()
-    print(f"{time.monotonic() - begin:.0f} s", file=sys.stderr)
-    rows = [f"| {' | '.join(row(*result))} |".replace("-", "−") for result in results]
+    rows = [f"| {' | '.join(row(*result))} |".replace("-", "−") for result in measure()]
     table = [HEAD, "|---" * (HEAD.count("|") - 1) + "|", *rows]
     print("\n".join(table))
     lines = PAGE.read_text().splitlines()

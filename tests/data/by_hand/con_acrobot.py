@@ -113,9 +113,6 @@ class Acrobot(AbstractController):
                 self.predicted[delay] = simulate(states[delay], [torque], self.model)[-1][:2]
         return [0.0, self.torques[-1]]
 
-    def save_(self, save_dir):
-        pass
-
 
 controller = Acrobot()
 controller.init()
