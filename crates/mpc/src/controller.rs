@@ -26,7 +26,7 @@ pub struct Settings {
     /// The motor's largest torque, N m.
     pub limit: f32,
     /// The counts of each encoder for a turn.
-    pub counts: [u16; 2],
+    pub counts: [i32; 2],
     /// Ticks from a decision to the next, such as 5 of 2 ms.
     pub ticks: u32,
 }
@@ -72,21 +72,21 @@ impl<const N: usize> Controller<N> {
     ///
     /// # Errors
     ///
-    /// A parameter is out of range, or the largest torque or a count is not above 0.
+    /// A parameter is out of range, or another setting is not above 0.
     pub fn new(settings: Settings) -> Result<Self, Error> {
-        let [counts1, counts2] = settings.counts.map(f32::from);
+        let [counts1, counts2] = settings.counts.map(f64::from);
         settings.params.validate()?;
         for (name, value, unit) in [
-            ("limit", settings.limit, "N m"),
+            ("limit", settings.limit.into(), "N m"),
             ("counts", counts1, "for a turn"),
             ("counts", counts2, "for a turn"),
+            ("ticks", settings.ticks.into(), "for a decision"),
         ] {
             if !(value > 0.0 && value.is_finite()) {
-                let (value, rule) = (value.into(), "finite and above 0");
-                return Err(Error::OutOfRange { name, value, unit, rule });
+                return Err(Error::OutOfRange { name, value, unit, rule: "finite and above 0" });
             }
         }
-        let angle = ANGLE * TAU / counts1.min(counts2);
+        let angle = ANGLE * TAU / counts1.min(counts2) as f32;
         let noise = Noise { angle, torque: TORQUE * settings.limit };
         let deviations = settings.deviations();
         Ok(Self {
@@ -106,10 +106,10 @@ impl<const N: usize> Controller<N> {
     ///
     /// # Errors
     ///
-    /// The estimate overflows. Switch the motor off.
+    /// The estimate or the torque is not finite. Switch the motor off.
     pub fn tick(&mut self, counts: [i32; 2]) -> Result<f32, ControlError> {
         let [count1, count2] = counts;
-        let [turn1, turn2] = self.settings.counts.map(i32::from);
+        let [turn1, turn2] = self.settings.counts;
         let angle =
             |count: i32, turn: i32| count.checked_rem(turn).unwrap_or(0) as f32 / turn as f32 * TAU;
         self.estimator.measure([angle(count1, turn1), angle(count2, turn2)])?;

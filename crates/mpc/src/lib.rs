@@ -5,9 +5,9 @@
 //! machine. It is long: call it in the main loop, where the interrupt may stop it anywhere. Between
 //! two slices of work [`Replanner::exchange`] copies plans and estimates.
 //!
-//! Dry friction in the joint without a motor changes the sign of a regulator's gains with the
-//! velocity, so no regulator holds for long. The plans that swing up also hold: each is improved
-//! for its next second, upright, too.
+//! Dry friction acts as much viscous friction at rest and as little in motion, and the gains of
+//! regulators for these have opposite signs, so no fixed regulator holds for long. The plans that
+//! swing up also hold: each is improved for its next second, upright, too.
 //!
 //! ```
 //! use acrobot::arithmetic::Damped;

@@ -99,6 +99,8 @@ fn bad_settings_are_rejected() {
     assert_eq!(counts, "counts must be finite and above 0 for a turn, got 0");
     let torque = error(Settings { limit: 0.0, ..good });
     assert_eq!(torque, "limit must be finite and above 0 N m, got 0");
+    let ticks = error(Settings { ticks: 0, ..good });
+    assert_eq!(ticks, "ticks must be finite and above 0 for a decision, got 0");
     let params = Params { mass1: -1.0, ..good.params };
     let mass = error(Settings { params, ..good });
     assert_eq!(mass, "mass1 must be finite and above 0 kg, got -1");
