@@ -1,13 +1,36 @@
-// One episode: its seed, parameters, actions and states.
+// One episode: its start, parameters, inputs and states.
 
 import { Acrobot } from "./acrobot-rs/index.js";
+import { LIMIT } from "./settings.js";
+
+/** The largest level of the motor, which has 12 bits, so that a link is short. */
+export const FULL = 2047;
+/** The units of a push in a rad/s. */
+export const UNITS = 4096;
+
+/** The motor's torque at a level from −FULL to FULL, N m. */
+export const torqueOf = (level, limit) => (level / FULL) * limit;
+
+/** The level that is closest to a torque. A motor of 0 N m has only 0. */
+export function levelOf(torque, limit) {
+  const level = Math.round((FULL * torque) / limit);
+  return Math.max(-FULL, Math.min(FULL, level)) || 0;
+}
 
 export class Game {
   acrobot = new Acrobot();
+  #shown = new Acrobot();
   seed;
   params;
-  actions = [];
-  /** Six numbers of each state: the initial one, and after each step. */
+  /** The state in which the inputs begin, or null for the seed's initial state. */
+  start = null;
+  /** The last inputs: the level of each step, and its change of both velocities, or null. */
+  levels = [];
+  pushes = [];
+  steps = 0;
+  /** Whether the game goes on at the goal and at the limit of steps. */
+  free = false;
+  /** The last states, each with its energy, the tip's height, and the torque that led to it. */
   #rows = [];
   /** `"goal"` or `"limit"` once the episode has ended. */
   end = null;
@@ -17,29 +40,64 @@ export class Game {
   }
 
   /** Begins an episode, or throws if the package rejects the parameters. */
-  begin(seed, params = this.params) {
-    this.acrobot.setParams(params);
+  begin(seed, params = this.params, start = null) {
+    this.#set(params);
     this.acrobot.reset(seed);
-    Object.assign(this, { seed, params, actions: [], end: null });
-    this.#rows = [this.#row()];
+    if (start !== null) this.acrobot.state = start;
+    Object.assign(this, { seed, start, levels: [], pushes: [], steps: 0, end: null });
+    this.#rows = [this.#row(0)];
   }
 
-  step(action) {
+  /** Changes the parameters for the next steps. The inputs then begin with the next step. */
+  change(params) {
+    this.#set(params);
+    Object.assign(this, { start: this.acrobot.state, levels: [], pushes: [] });
+  }
+
+  #set(params) {
+    const { torque, ...others } = params;
+    if (!(torque >= 0)) throw new Error(`torque must be at least 0 N m, got ${torque}`);
+    this.acrobot.setParams({ ...others, torques: [-torque, 0, torque] });
+    this.params = params;
+  }
+
+  /** Steps with a level of the motor, and a push in its units or null. */
+  step(level, push = null) {
     if (this.end !== null) return;
-    const { terminated, truncated } = this.acrobot.step(action);
-    this.actions.push(action);
-    this.#rows.push(this.#row());
+    const torque = torqueOf(level, this.params.torque);
+    const { terminated, truncated } = apply(this.acrobot, torque, push);
+    this.levels.push(level);
+    this.pushes.push(push);
+    this.#rows.push(this.#row(torque));
+    this.steps++;
+    this.#forget();
+    if (this.free) return;
     if (terminated) this.end = "goal";
     else if (truncated) this.end = "limit";
   }
 
-  #row() {
-    const { state, energy, tipHeight } = this.acrobot;
-    return Float32Array.of(...Object.values(state), energy, tipHeight);
+  /** Goes on without an end. */
+  release() {
+    Object.assign(this, { free: true, end: null });
   }
 
-  get steps() {
-    return this.actions.length;
+  #forget() {
+    if (this.#rows.length > LIMIT + 1) this.#rows.shift();
+    if (this.levels.length <= LIMIT) return;
+    this.levels.shift();
+    this.pushes.shift();
+    const [theta1, theta2, dtheta1, dtheta2] = this.#rows[0];
+    this.start = { theta1, theta2, dtheta1, dtheta2 };
+  }
+
+  #row(torque) {
+    const { state, energy, tipHeight } = this.acrobot;
+    return Float32Array.of(...Object.values(state), energy, tipHeight, torque);
+  }
+
+  /** The step of the first of the last states. */
+  get first() {
+    return this.steps - this.#rows.length + 1;
   }
 
   /** −1 for each step except the one that reaches the goal. */
@@ -47,50 +105,37 @@ export class Game {
     return (this.end === "goal" ? 1 : 0) - this.steps;
   }
 
-  /** The four numbers of the state, the energy and the height of the tip. */
+  /** The four numbers of the state, the energy, the height of the tip, and the last torque. */
   get numbers() {
     return this.#rows.at(-1);
   }
 
   /**
-   * Draws the acrobot at a part of its last step, from 0 to 1, because a display shows more frames
-   * than the physics takes steps.
+   * The acrobot at a part of its last step, from 0 to 1, because a display shows more frames than
+   * the physics takes steps.
    */
-  draw(context, part, colors) {
-    const { state } = this.acrobot;
-    const { theta1, theta2 } = this.between(part);
-    this.acrobot.state = { ...state, theta1, theta2 };
-    this.acrobot.draw(context, { colors });
-    this.acrobot.state = state;
-  }
-
-  /** The angles at a part of the last step. */
   between(part) {
-    const after = this.numbers;
-    const before = this.#rows.at(-2) ?? after;
-    const { dt } = this.params;
-    const angle = (i) =>
-      angleBetween(before[i], after[i], before[i + 2] * dt, after[i + 2] * dt, part);
-    return { theta1: angle(0), theta2: angle(1) };
+    const before = this.#rows.at(-2);
+    const dt = Math.fround(part * this.params.dt);
+    if (part === 1 || dt === 0 || before === undefined) return this.acrobot;
+    const [theta1, theta2, dtheta1, dtheta2] = before;
+    this.#shown.setParams({ ...this.acrobot.params, dt });
+    this.#shown.state = { theta1, theta2, dtheta1, dtheta2 };
+    apply(this.#shown, this.numbers[6], this.pushes.at(-1) ?? null);
+    return this.#shown;
   }
 
-  /** One of the six numbers, of the initial state and after each step. */
   column(index) {
     return Array.from(this.#rows, (row) => row[index]);
   }
 }
 
-/**
- * Interpolates between the angles `a` and `b` by a cubic Hermite polynomial, with the velocities at
- * the start and at the end of a step in radians a step.
- */
-function angleBetween(a, b, start, end, part) {
-  const mean = (start + end) / 2;
-  // Angles are modulo 2π: take the turns closest to those at the mean velocity.
-  const turned = b - a + 2 * Math.PI * Math.round((mean - (b - a)) / (2 * Math.PI));
-  const [part2, part3] = [part ** 2, part ** 3];
-  const bend = start * (part3 - 2 * part2 + part) + end * (part3 - part2);
-  const angle = a + turned * (3 * part2 - 2 * part3) + bend;
-  // With a huge dt there are too many turns to show.
-  return Math.abs(angle) < 1e6 ? angle : b;
+/** Steps an acrobot with a torque. A push changes the velocities before the step. */
+function apply(acrobot, torque, push) {
+  if (push !== null) {
+    const { theta1, theta2, dtheta1, dtheta2 } = acrobot.state;
+    const [more1, more2] = push.map((units) => units / UNITS);
+    acrobot.state = { theta1, theta2, dtheta1: dtheta1 + more1, dtheta2: dtheta2 + more2 };
+  }
+  return acrobot.stepTorque(torque);
 }

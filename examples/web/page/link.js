@@ -1,35 +1,90 @@
-// A run in an address, after the #: seed, parameters that differ from Gymnasium's, and actions.
+// A run in an address, after the #: seed, parameters that differ from Gymnasium's, and inputs:
+// either the actions of a whole episode, as the program `trace` takes them, or torques and pushes
+// from a state on.
 
+import { FULL } from "./game.js";
 import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed, textOf } from "./settings.js";
 
-export function encodeRun({ seed, params, actions }) {
+const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
+/** The largest push in its units. */
+const PUSH = 2 ** 20;
+
+/** The actions 0, 1 and 2 of a run that has only these, or null. */
+export function actionsOf({ start, levels, pushes }) {
+  const isAction = (level) => level === 0 || Math.abs(level) === FULL;
+  const isPushed = pushes.some((push) => push !== null);
+  if (start !== null || isPushed || !levels.every(isAction)) return null;
+  return levels.map((level) => 1 + level / FULL);
+}
+
+export function encodeRun(run) {
+  const { seed, params, start, levels, pushes, policy } = run;
   const fields = new URLSearchParams({ seed });
   for (const [name, value] of Object.entries(params)) {
     if (value !== DEFAULTS[name]) fields.set(name, textOf(value));
   }
-  if (actions.length > 0) fields.set("actions", actions.join(""));
+  if (policy === "planner") fields.set("policy", policy);
+  const actions = actionsOf(run);
+  const pushed = pushes.flatMap((push, step) => (push === null ? [] : [step, ...push]));
+  const lists = {
+    state: start === null ? [] : STATE.map((name) => textOf(start[name])),
+    actions: actions === null || levels.length === 0 ? [] : [actions.join("")],
+    torques: actions === null ? levels : [],
+    pushes: pushed,
+  };
+  for (const [name, list] of Object.entries(lists)) {
+    if (list.length > 0) fields.set(name, list.join("_"));
+  }
   return `#${fields}`;
 }
 
 /** The run in an address, with unchecked parameters. Throws an `Error` with the reason. */
 export function decodeRun(hash) {
   const fields = new URLSearchParams(hash.slice(1));
-  const known = ["seed", "dynamics", "actions", ...PARAMETERS.map(({ name }) => name)];
+  const rejected = (rule, name) => {
+    throw new Error(`${rule}, got ${JSON.stringify(name)}`);
+  };
+  const names = ["seed", "dynamics", "policy", "actions", "state", "torques", "pushes"];
+  const known = [...names, ...PARAMETERS.map(({ name }) => name)];
   const unknown = [...fields.keys()].find((name) => !known.includes(name));
-  if (unknown !== undefined) {
-    const rule = `names in the link must be ${known.join(", ")}`;
-    throw new Error(`${rule}, got ${JSON.stringify(unknown)}`);
-  }
+  if (unknown !== undefined) rejected(`names in the link must be ${known.join(", ")}`, unknown);
   const params = { ...DEFAULTS };
   for (const { name } of PARAMETERS) {
     if (fields.has(name)) params[name] = parseNumber(fields.get(name));
   }
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
+  const policy = fields.get("policy") ?? "planner";
+  if (policy !== "planner") rejected("policy in the link must be planner", policy);
+  const seed = parseSeed(fields.get("seed") ?? "42");
+
   const actions = fields.get("actions") ?? "";
   if (!/^[012]*$/.test(actions) || actions.length > LIMIT) {
-    const rule = `actions must be at most ${LIMIT} of 0, 1 and 2`;
-    throw new Error(`${rule}, got ${JSON.stringify(actions)}`);
+    rejected(`actions must be at most ${LIMIT} of 0, 1 and 2`, actions);
   }
-  const seed = parseSeed(fields.get("seed") ?? "42");
-  return { seed, params, actions: Array.from(actions, Number) };
+  /** A list of numbers from the link, if each is valid. */
+  const listOf = (name, rule, isValid) => {
+    const list = fields.has(name) ? fields.get(name).split("_").map(parseNumber) : [];
+    if (!list.every(isValid)) rejected(`${name} must be at most ${rule}`, fields.get(name));
+    return list;
+  };
+  const integers = (name, largest, count) => {
+    const isInteger = (number) => Number.isInteger(number) && !Object.is(number, -0);
+    const isValid = (number, i) => isInteger(number) && Math.abs(number) <= largest && i < count;
+    return listOf(name, `${count} integers up to ±${largest}`, isValid);
+  };
+  const torques = integers("torques", FULL, LIMIT);
+  const levels = torques.length > 0 ? torques : Array.from(actions, (each) => FULL * (each - 1));
+  const pushes = levels.map(() => null);
+  const pushed = integers("pushes", PUSH, 3 * LIMIT);
+  for (let i = 0; i < pushed.length; i += 3) {
+    const [step, ...push] = pushed.slice(i, i + 3);
+    if (!(step in pushes) || push.length < 2) rejected("pushes must be of steps", pushed);
+    pushes[step] = push;
+  }
+  const isFinite32 = (number, i) => Number.isFinite(Math.fround(number)) && i < 4;
+  const state = listOf("state", "4 finite numbers", isFinite32);
+  if (state.length % 4 !== 0) rejected("state must be 4 numbers", state);
+  const entries = state.map((number, i) => [STATE[i], number]);
+  const start = entries.length === 0 ? null : Object.fromEntries(entries);
+  return { seed, params, policy: fields.get("policy") ?? undefined, start, levels, pushes };
 }

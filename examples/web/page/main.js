@@ -1,21 +1,31 @@
 // Connects the page to an episode and to the panels.
 
-import { Learner, bangBang, energyLaw, uprightEnergy } from "./acrobot-rs/policies.js";
-import { Game } from "./game.js";
-import { decodeRun, encodeRun } from "./link.js";
+import { Learner, bangBang, energyLaw } from "./acrobot-rs/policies.js";
+import { number, showCharts } from "./charts.js";
+import { connectControls } from "./controls.js";
+import { FULL, Game, UNITS } from "./game.js";
+import { actionsOf, decodeRun, encodeRun } from "./link.js";
 import { attempt, parametersPanel } from "./parameters.js";
-import { color, minus, plot, rangeOf } from "./plot.js";
-import { DEFAULTS, parseSeed } from "./settings.js";
-import { drawStage } from "./stage.js";
+import { PlannerPolicy, isUpright } from "./planner.js";
+import { minus } from "./plot.js";
+import { placesOf, pull } from "./push.js";
+import { BALANCE, DEFAULTS, LIMIT, parseSeed } from "./settings.js";
+import { drawStage, placeAt } from "./stage.js";
 import { trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
 
 /** How long a policy's ended episode stays on the screen before the next begins, ms. */
 const INTERVAL = 1500;
+/** The least time between two updates of numbers and plots while it plays, ms. */
+const PERIOD = 80;
+
+const isSame = (params, others) =>
+  Object.entries(others).every(([name, value]) => Object.is(params[name], value));
 
 function start() {
   const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
+  const planner = new PlannerPolicy();
   let learnt = learner;
   const POLICIES = {
     bang_bang: bangBang,
@@ -25,7 +35,7 @@ function start() {
   };
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const isTouch = matchMedia("(hover: none)").matches;
-  const takeOver = `To take over, ${isTouch ? "touch a half of the picture" : "press ← or →"}.`;
+  const takeOver = `To take over, press ${isTouch ? "◀ or ▶" : "← or →"}.`;
   $("app").hidden = false;
   $("notice").hidden = true;
 
@@ -34,39 +44,66 @@ function start() {
   let shown = game.params.dt;
   /** When the next episode begins; infinite if the user must begin it. */
   let nextAt = Infinity;
-  /** The actions of a link. */
-  let recorded = [];
+  /** The run of a link. */
+  let recorded = null;
   const held = { left: false, right: false };
+  /** What pulls: a `point` of a link, and where to, in the picture or as seen from the point. */
+  let grip = null;
+  /** The seconds since the acrobot is upright, and the steps before the user took over. */
+  let upright = 0;
+  let before = 0;
 
   // ---- the episode
 
-  const action = () => {
+  const level = () => {
     const policy = $("policy").value;
-    if (policy === "keys") return 1 + Number(held.right) - Number(held.left);
-    if (policy === "link") return recorded[game.steps];
-    return POLICIES[policy](game.acrobot);
+    if (policy === "keys") return FULL * (Number(held.right) - Number(held.left));
+    if (policy === "planner") return planner.act(game, grip !== null);
+    return FULL * (POLICIES[policy](game.acrobot) - 1);
+  };
+
+  /** Where the grip pulls to, m. */
+  const target = () => {
+    const { at, offset } = grip;
+    if (at) return placeAt(...at, game.params);
+    return placesOf(game.acrobot.state, game.params)[1].map((x, i) => x + offset[i]);
+  };
+  const push = () => {
+    if (grip === null) return null;
+    const { state, params } = game.acrobot;
+    const units = pull(grip.point, target(), state, params).map((x) => Math.round(UNITS * x) || 0);
+    return units.some((unit) => unit !== 0) ? units : null;
   };
 
   const step = () => {
     try {
-      const next = action();
-      if (next === undefined) {
+      const index = game.steps;
+      const replays = $("policy").value === "link";
+      if (replays && index === recorded.levels.length) {
+        if (recorded.policy === "planner") return choose("planner");
         return pause("The replay has ended. Press Restart, or an arrow and Play.");
       }
-      game.step(next);
+      if (replays) game.step(recorded.levels[index], recorded.pushes[index]);
+      else game.step(level(), push());
     } catch (error) {
       return pause(minus(error.message)); // With extreme physics an energy is infinite.
     }
+    upright = isUpright(game.numbers) ? upright + game.params.dt : 0;
     shown = 0;
     if (game.end === null) return;
-    const result = `${game.end === "goal" ? "Goal" : "Out of time"} after ${game.steps} steps.`;
+    const own = before > 0 ? `, ${game.steps - before} of them yours` : "";
+    const end = game.end === "goal" ? "Goal" : "Out of time";
+    const result = `${end} after ${game.steps} steps${own}.`;
     const continues = playing && !["keys", "link"].includes($("policy").value);
     if (continues) nextAt = performance.now() + INTERVAL;
     say(`${result} ${continues ? "The next seed follows." : "Press Restart or Next seed."}`);
   };
 
-  const begin = (seed, params = game.params) => {
-    game.begin(seed, params);
+  /** Begins an episode, or a link's run from the state where it begins. */
+  const begin = (seed, params = game.params, run = replayed()) => {
+    game.begin(seed, params, run?.start);
+    game.free = $("policy").value === "planner" || (run !== null && actionsOf(run) === null);
+    upright = before = 0;
     shown = params.dt;
     nextAt = Infinity;
     $("seed").value = seed;
@@ -77,8 +114,21 @@ function start() {
     changed();
   };
   /** Puts the run into the address, so that loading the page again begins it. */
-  const address = (actions = $("policy").value === "link" ? recorded : []) =>
-    history.replaceState(null, "", encodeRun({ ...game, actions }));
+  const address = (run = replayed() ?? { start: null, levels: [], pushes: [] }) => {
+    const { seed, params } = game;
+    const policy = run === recorded ? recorded.policy : $("policy").value;
+    history.replaceState(null, "", encodeRun({ ...run, seed, params, policy }));
+  };
+  const replayed = () => ($("policy").value === "link" ? recorded : null);
+
+  /** Changes the parameters at once, except where another episode must begin. */
+  const setPhysics = (params) => {
+    if (game.steps === 0 || game.end !== null || replayed()) return begin(game.seed, params);
+    game.change(params);
+    shown = params.dt;
+    address();
+    changed();
+  };
 
   const reset = () => {
     begin(game.seed);
@@ -114,12 +164,27 @@ function start() {
   /** Who applies the torque, as a sentence. */
   const player = () => {
     const { value, selectedOptions: [{ textContent: policy }] } = $("policy");
-    return { keys: "You play.", link: "The replay runs." }[value] ?? `${policy} plays. ${takeOver}`;
+    if (value === "planner") {
+      const { torque, dt } = game.params;
+      return `Planner plays with ${torque} N m, every ${dt} s. Pull the acrobot.`;
+    }
+    const own = before > 0 ? " on. For an episode of your own, press Restart" : "";
+    const others = { keys: `You play${own}.`, link: "The replay runs." };
+    return others[value] ?? `${policy} plays. ${takeOver}`;
   };
 
   const choose = (policy) => {
+    const takesOver = policy === "keys" && $("policy").value !== "keys";
+    before = takesOver ? game.steps : 0;
     $("policy").value = policy;
-    if (policy !== "keys" && game.end !== null) begin(game.seed);
+    if (policy === "planner") {
+      game.release();
+      nextAt = Infinity;
+    } else if (policy === "link") begin(recorded.seed, recorded.params);
+    else if (policy !== "keys" && (game.end !== null || game.free)) {
+      begin(game.seed, isSame(game.params, BALANCE) ? { ...DEFAULTS } : game.params);
+    }
+    showParams();
     address();
     if (playing) say(player());
     else if (policy === "keys") say("You play. Press Play.");
@@ -128,47 +193,17 @@ function start() {
 
   // ---- what the page shows
 
-  const number = (value, digits = 2) => {
-    if (!Number.isFinite(value)) return "too large";
-    return minus(Math.abs(value) < 1e6 ? value.toFixed(digits) : value.toPrecision(4));
-  };
-  /** Draws a plot of columns, and a caption with their last values and `more` HTML. */
-  const show = (id, title, names, unit, columns, options, more = "") => {
-    const colors = [color("--accent"), color("--second")];
-    const series = columns.map((values, i) => ({ values, color: colors[i] }));
-    plot($(id), { series, end: Math.max(game.steps, 50), unit: "steps", ...options });
-    const last = columns.map((column, i) => {
-      const text = `${names[i]} ${number(column.at(-1))} ${unit}`;
-      return `<span class="${["first", "second"][i]}">${text}</span>`;
-    });
-    $(`${id}-caption`).innerHTML = `<span>${title}</span>${last.join("")}${more}`;
-  };
-
-  const plots = () => {
-    const columns = [0, 1, 2, 3, 4, 5].map((index) => game.column(index));
-    const [energy, heights] = columns.slice(4);
-    const [angles, velocities] = [columns.slice(0, 2), columns.slice(2, 4)];
-    const standing = uprightEnergy(game.acrobot.params);
-    const more = `<span class="hint">upright: ${number(standing)} J</span>
-      <span>tip height ${number(heights.at(-1))} m</span>`;
-    const range = rangeOf([...energy, standing, -standing]);
-    const marks = [[standing, color("--muted")]];
-    show("energy", "Energy", [""], "J", [energy], { range, marks }, more);
-    const turn = { range: [-Math.PI, Math.PI], period: 2 * Math.PI };
-    show("angles", "Angles", ["θ1", "θ2"], "rad", angles, turn);
-    const fastest = 1.06 * Math.max(2, ...velocities.flat().map(Math.abs));
-    const bounds = { range: [-fastest, fastest] };
-    show("velocities", "Velocities", ["θ1′", "θ2′"], "rad/s", velocities, bounds);
-  };
-
   let dirty = true;
   /** Requests an update of everything except the picture, which each frame draws. */
   const changed = () => (dirty = true);
 
-  const update = () => {
-    dirty = false;
+  let updated = 0;
+  const update = (now) => {
+    [dirty, updated] = [false, now];
     $("step").textContent = game.steps;
-    $("return").textContent = minus(String(game.return));
+    $("return").textContent = game.free ? `${upright.toFixed(1)} s` : minus(String(game.return));
+    $("steps-label").textContent = game.free ? "Steps" : "Steps (at most 500)";
+    $("return-label").textContent = game.free ? "Upright for" : "Return";
     $("pause").textContent = playing ? "Pause" : "Play";
     const verdicts = { goal: `Goal! ${game.steps} steps`, limit: "Out of time" };
     $("verdict").textContent = verdicts[game.end] ?? "";
@@ -179,7 +214,7 @@ function start() {
       return `<tr><th scope="row">${name}</th><td>${value}</td><td>${code}</td></tr>`;
     });
     $("state").innerHTML = rows.join("");
-    plots();
+    showCharts(game);
   };
 
   let last = performance.now();
@@ -191,9 +226,9 @@ function start() {
     const { dt } = game.params;
     if (playing && game.end === null) {
       shown += elapsed * Number($("pace").value);
-      // The limit of steps ends this loop even if dt is tiny.
-      while (shown >= dt && playing && game.end === null) {
-        const over = shown - dt;
+      // With a tiny dt a frame shows fewer steps than it should.
+      for (let i = 0; shown >= dt && playing && game.end === null && i < LIMIT; i++) {
+        const over = i + 1 < LIMIT ? shown - dt : 0;
         step();
         shown = playing ? over : dt;
         changed();
@@ -206,8 +241,14 @@ function start() {
       next();
       $("link-field").hidden = hidden;
     }
-    drawStage(game, calm.matches ? 1 : Math.min(shown / dt, 1));
-    if (dirty) update();
+    const plans = $("policy").value === "planner";
+    $("thought").textContent = plans ? (planner.thinks ? "Planning…" : planner.message) : "";
+    $("thought").classList.toggle("thinks", plans && planner.thinks);
+    const pulled = grip && { point: grip.point, target: target() };
+    const part = calm.matches ? 1 : Math.min(shown / dt, 1);
+    drawStage(game, part, plans ? planner.path : [], pulled);
+    // Plots take longer than all else.
+    if (dirty && (!playing || now - updated >= PERIOD)) update(now);
   };
 
   // ---- keys and buttons
@@ -217,60 +258,32 @@ function start() {
     $(side).classList.toggle("held", on);
     if (on && $("policy").value !== "keys") choose("keys");
   };
-  const keys = { " ": toggle, s: single, r: reset, n: next };
-  const sides = { ArrowLeft: "left", ArrowRight: "right" };
-  document.addEventListener("keydown", (event) => {
-    const { key, target } = event;
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const field = target.closest("input, select");
-    if (field) {
-      const leaves = field.matches("select") ? key in sides : ["Enter", "Escape"].includes(key);
-      if (leaves) field.blur();
-      if (!(leaves && key in sides)) return;
-    }
-    // The space bar presses the focused button.
-    if (key === " " && target.closest("button, summary, a")) return;
-    if (key in sides) hold(sides[key], true);
-    else if (!event.repeat && key.toLowerCase() in keys) keys[key.toLowerCase()]();
-    else return;
-    event.preventDefault();
+  connectControls({
+    keys: { " ": toggle, s: single, r: reset, n: next },
+    hold,
+    grip(pulled) {
+      grip = pulled;
+      // A replay has its own pushes.
+      if (grip !== null && $("policy").value === "link") choose("keys");
+    },
+    acrobot: game.acrobot,
   });
-  document.addEventListener("keyup", ({ key }) => key in sides && hold(sides[key], false));
-  // If the key is released in another window, this one gets no event.
-  addEventListener("blur", () => ["left", "right"].forEach((side) => hold(side, false)));
-  /** Holds the side that a pointer's event chooses while that pointer is down. */
-  const holdBy = (element, sideOf) => {
-    const pointers = new Map();
-    element.addEventListener("pointerdown", (event) => {
-      const side = sideOf(event);
-      if (side === null) return;
-      element.setPointerCapture(event.pointerId);
-      pointers.set(event.pointerId, side);
-      hold(side, true);
-    });
-    element.addEventListener("lostpointercapture", ({ pointerId }) => {
-      const side = pointers.get(pointerId);
-      pointers.delete(pointerId);
-      if (![...pointers.values()].includes(side)) hold(side, false);
-    });
-    element.addEventListener("contextmenu", (event) => event.preventDefault());
-  };
-  // A mouse's click only focuses the picture.
-  holdBy($("stage"), ({ pointerType, offsetX }) => {
-    if (pointerType === "mouse") return null;
-    return offsetX < $("stage").clientWidth / 2 ? "left" : "right";
-  });
-  for (const side of ["left", "right"]) {
-    const button = $(side);
-    holdBy(button, () => side);
-    for (const [type, on] of [["keydown", true], ["keyup", false]]) {
-      button.addEventListener(type, ({ key }) => [" ", "Enter"].includes(key) && hold(side, on));
-    }
-    button.addEventListener("blur", () => hold(side, false));
-  }
   const buttons = { pause: toggle, single, reset, next };
   for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
-  $("policy").onchange = ({ target }) => choose(target.value);
+  const select = (policy) => {
+    // With Gymnasium's 1 N m a swing-up takes at least 10 s, and a touch is enough for a fall.
+    const isWeak = policy === "planner" && isSame(game.params, DEFAULTS);
+    choose(policy);
+    if (!isWeak) return;
+    setPhysics({ ...BALANCE });
+    showParams();
+    if (playing) say(player());
+  };
+  $("policy").onchange = ({ target }) => select(target.value);
+  $("balance").onclick = () => {
+    select("planner");
+    if (!playing) play();
+  };
   // After a click. Who uses the keyboard may go on with ↑ and ↓.
   const leaves = ({ target }) => target.matches("select:not(:focus-visible)") && target.blur();
   $("app").addEventListener("change", leaves);
@@ -287,9 +300,8 @@ function start() {
   const showParams = parametersPanel(
     () => game.params,
     (params) => {
-      begin(game.seed, params);
-      const restarts = "The episode restarts, because the physics has changed.";
-      say(playing ? `${restarts} ${player()}` : restarts);
+      setPhysics(params);
+      say(playing ? `The physics has changed. ${player()}` : "The physics has changed.");
     },
   );
 
@@ -299,12 +311,11 @@ function start() {
     if (hash.length <= 1) return;
     try {
       const run = decodeRun(hash);
-      begin(run.seed, run.params);
-      showParams();
-      recorded = run.actions;
-      const { length } = recorded;
+      begin(run.seed, run.params, run);
+      recorded = run;
+      const { length } = run.levels;
       document.querySelector("[value=link]").disabled = length === 0;
-      choose(length > 0 ? "link" : "bang_bang");
+      choose(length > 0 ? "link" : run.policy ?? "bang_bang");
       if (length > 0) say(`Replay of a link: ${length} steps of seed ${run.seed}.`);
     } catch (error) {
       address();
@@ -314,12 +325,13 @@ function start() {
   };
   addEventListener("hashchange", () => open(location.hash));
   $("share").onclick = async () => {
-    address(game.actions);
+    address(game);
     const { href } = location;
     $("link").value = href;
     $("link-field").hidden = false;
     $("link").select();
-    const content = `seed, physics and ${game.steps} actions`;
+    const inputs = actionsOf(game) === null ? "torques" : "actions";
+    const content = `seed, physics and ${game.levels.length} ${inputs}`;
     const shown = (text) => ($("link-field").firstElementChild.textContent = text);
     try {
       await navigator.clipboard.writeText(href);
@@ -364,5 +376,6 @@ try {
 } catch (error) {
   $("app").hidden = true;
   $("notice").hidden = false;
+  $("notice").role = "alert";
   $("notice").textContent = `The page could not start: ${error.message}.`;
 }

@@ -2,7 +2,7 @@
 // field shows why a value is rejected.
 
 import { minus } from "./plot.js";
-import { DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
+import { BALANCE, DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -40,8 +40,10 @@ export function parametersPanel(get, set) {
       const isNew = !Object.is(value, get()[name]);
       attempt(text, reason, () => isNew && set({ ...get(), [name]: value }));
     };
-    slider.oninput = () => (text.value = slider.value);
-    slider.onchange = change;
+    slider.oninput = () => {
+      text.value = slider.value;
+      change();
+    };
     // So that ← and → are the torque again.
     slider.onpointerup = () => slider.blur();
     text.oninput = () => {
@@ -58,9 +60,11 @@ export function parametersPanel(get, set) {
     fields.forEach((show) => show());
   };
   $("dynamics").onchange = ({ target }) => set({ ...get(), dynamics: target.value });
-  $("defaults").onclick = () => {
-    set({ ...DEFAULTS });
-    show();
-  };
+  for (const [id, preset] of [["defaults", DEFAULTS], ["strong", BALANCE]]) {
+    $(id).onclick = () => {
+      set({ ...preset });
+      show();
+    };
+  }
   return show;
 }

@@ -8,7 +8,6 @@ const RIGHT_ANGLES = ["−π", "−π/2", "0", "π/2", "π"].map((t, i) => [(i /
 /** A text whose negative numbers have the minus sign. */
 export const minus = (text) => text.replace(/-(?=[\dI])/g, "−");
 
-/** A colour of the style sheet, by the name of its custom property. */
 export function color(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

@@ -5,9 +5,9 @@ import { attempt } from "./parameters.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
 import { parseNumber, parseSeed } from "./settings.js";
 
-/** Solved, as Gymnasium defines it: a mean return of −100 over 100 episodes. */
+/** Gymnasium's threshold: a mean return of −100 over 100 episodes. */
 const WINDOW = 100;
-const SOLVED = -100;
+const THRESHOLD = -100;
 /** The untrained policy's mean return. */
 export const BASELINE = -84;
 const EPISODES = 1_000_000;
@@ -28,10 +28,10 @@ export function trainingPanel(learner, { ready, drive }) {
   let means = [];
 
   const draw = () => {
-    const range = rangeOf([...means, 2 * SOLVED, 0]);
+    const range = rangeOf([...means, 2 * THRESHOLD, 0]);
     const series = [{ values: means, color: color("--accent") }];
     const end = WINDOW + Math.max(means.length - 1, WINDOW);
-    const marks = [[SOLVED, color("--muted")], [BASELINE, color("--second")]];
+    const marks = [[THRESHOLD, color("--muted")], [BASELINE, color("--second")]];
     plot($("curve"), { series, range, start: WINDOW, end, unit: "episodes", marks });
   };
 
@@ -75,12 +75,12 @@ export function trainingPanel(learner, { ready, drive }) {
       take(data.weights);
       draw();
       const mean = sum / Math.min(returns.length, WINDOW);
-      const solved = means.findIndex((mean) => mean >= SOLVED);
+      const passed = means.findIndex((mean) => mean >= THRESHOLD);
       const text = [
         `${returns.length.toLocaleString("en")} of ${episodes.toLocaleString("en")} episodes`,
         `mean return ${minus(mean.toFixed(1))}`,
         ...(means.length === 0 ? [`the curve begins after ${WINDOW} episodes`] : []),
-        solved < 0 ? "not solved yet" : `solved at episode ${solved + WINDOW}`,
+        passed < 0 ? "below the threshold" : `above the threshold at episode ${passed + WINDOW}`,
       ].join(" · ");
       $("training-status").textContent = text;
       if (returns.length === episodes) stop();

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 
-import { linkedActions, onPage, paused, text } from "./player.mjs";
+import { linked, onPage, paused, text } from "./player.mjs";
 
 const touched = { hasTouch: true, isMobile: true };
 const SCREENS = {
@@ -11,19 +11,17 @@ const SCREENS = {
   desktop: { viewport: { width: 1280, height: 900 } },
 };
 
-onPage("touching a button or half the picture applies torque", SCREENS.landscape, async (page) => {
+onPage("fingers hold torques, and pull the picture", SCREENS.landscape, async (page) => {
   await paused(page, 42);
   const session = await page.context().newCDPSession(page);
   // Type of the event, and for each finger the part of the element's width, from the left.
   for (const [selector, type, ...parts] of [
-    ["#stage", "touchStart", 0.2],
-    ["#stage", "touchEnd"],
-    ["#stage", "touchStart", 0.9],
-    ["#stage", "touchStart", 0.9, 0.2],
-    ["#stage", "touchEnd", 0.2], // the finger that leaves
-    ["#stage", "touchEnd"],
     ["#left", "touchStart", 0.5],
     ["#left", "touchEnd"],
+    ["#right", "touchStart", 0.5],
+    ["#right", "touchEnd"],
+    ["#stage", "touchStart", 0.9],
+    ["#stage", "touchEnd"],
   ]) {
     await page.locator(selector).scrollIntoViewIfNeeded();
     const { x, y, width, height } = await page.locator(selector).boundingBox();
@@ -32,7 +30,11 @@ onPage("touching a button or half the picture applies torque", SCREENS.landscape
     await text(page, "#step");
     await page.evaluate(() => document.querySelector("#single").click());
   }
-  assert.deepEqual(await linkedActions(page), [0, 1, 2, 1, 2, 1, 0, 1]);
+  const { levels, pushes } = await linked(page);
+  assert.deepEqual(levels.map(Math.sign), [-1, 0, 1, 0, 0, 0]);
+  // To the right, and only with the finger.
+  const isPushed = pushes.map((push) => push !== null && push[0] > 0);
+  assert.deepEqual(isPushed, [false, false, false, false, true, false]);
 });
 
 for (const [name, options] of Object.entries(SCREENS)) {

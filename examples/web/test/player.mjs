@@ -8,7 +8,7 @@ import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 import { launch } from "../../../bindings/npm/browser.mjs";
-import { decodeRun } from "../page/link.js";
+import { decodeRun } from "../dist/link.js";
 
 /** Tests write their files here. */
 export const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
@@ -115,10 +115,10 @@ export async function steps(page, count) {
   }, count);
 }
 
-/** The actions in the page's link to its run. */
-export async function linkedActions(page) {
+/** The run in the page's link. */
+export async function linked(page) {
   await page.click("#share");
-  return decodeRun(new URL(await page.inputValue("#link")).hash).actions;
+  return decodeRun(new URL(await page.inputValue("#link")).hash);
 }
 
 export async function downloaded(page, button) {

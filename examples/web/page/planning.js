@@ -1,0 +1,39 @@
+// Plans outside the page's thread. It receives the parameters, a torque and a state, and posts a
+// plan, or null, with the milliseconds it took, and the gain −K of the regulator after the plan.
+
+import { Planner, regulator } from "./acrobot-rs/control.js";
+
+/** Durations of plans, s: the shortest in which a try succeeds. */
+const HORIZONS = [1.6, 3.2, 6.4, 12.8, 25.6];
+/** The most steps of a plan, so that a tiny time step does not take minutes. */
+const STEPS = 3000;
+const TRIES = 6;
+/** The planner's weights. */
+const EYE = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
+
+/** The last request. Those before it are obsolete. */
+let last = null;
+
+function plan() {
+  const { id, params, limit, start, seed } = last;
+  last = null;
+  try {
+    const began = performance.now();
+    const planner = new Planner(params, limit);
+    let plan = null;
+    for (const seconds of HORIZONS) {
+      const steps = Math.min(Math.ceil(seconds / params.dt), STEPS);
+      plan ??= planner.plan(start, { steps, tries: TRIES, seed });
+    }
+    const duration = performance.now() - began;
+    postMessage({ id, plan, gain: regulator(params, EYE, 1).gain.map((k) => -k), duration });
+    planner.free();
+  } catch ({ message }) {
+    postMessage({ id, error: message });
+  }
+}
+
+onmessage = ({ data }) => {
+  if (last === null) setTimeout(plan);
+  last = data;
+};
