@@ -5,8 +5,24 @@ import { LIMIT } from "./settings.js";
 
 /** The largest level of the motor, which has 12 bits, so that a link is short. */
 export const FULL = 2047;
+/** A number of the normal distribution with a standard deviation of 1. */
+export const normal = () =>
+  Math.sqrt(-2 * Math.log(1 - Math.random())) * Math.cos(2 * Math.PI * Math.random());
+
+/** The level that a noisy motor makes of another. */
+export const noisy = (level, { noise, torque }) =>
+  noise === 0 ? level : levelOf(torqueOf(level, torque) + noise * normal(), torque);
+
+/** An acrobot with friction. Without it, steps have the bits of Gymnasium's task. */
+export const newAcrobot = () => new Acrobot({ task: "balance" });
+/** This reward is at Gymnasium's line. */
+const GOAL = 0.75;
+const gymnasium = new Acrobot();
+
 /** The units of a push in a rad/s. */
 export const UNITS = 4096;
+/** In shorter steps, s, a display shows no state between two of them. */
+const FRAME = 0.025;
 
 /** The motor's torque at a level from −FULL to FULL, N m. */
 export const torqueOf = (level, limit) => (level / FULL) * limit;
@@ -18,8 +34,8 @@ export function levelOf(torque, limit) {
 }
 
 export class Game {
-  acrobot = new Acrobot();
-  #shown = new Acrobot();
+  acrobot = newAcrobot();
+  #shown = newAcrobot();
   seed;
   params;
   /** The state in which the inputs begin, or null for the seed's initial state. */
@@ -42,8 +58,9 @@ export class Game {
   /** Begins an episode, or throws if the package rejects the parameters. */
   begin(seed, params = this.params, start = null) {
     this.#set(params);
+    gymnasium.reset(seed);
     this.acrobot.reset(seed);
-    if (start !== null) this.acrobot.state = start;
+    this.acrobot.state = start ?? gymnasium.state;
     Object.assign(this, { seed, start, levels: [], pushes: [], steps: 0, end: null });
     this.#rows = [this.#row(0)];
   }
@@ -55,9 +72,14 @@ export class Game {
   }
 
   #set(params) {
-    const { torque, ...others } = params;
-    if (!(torque >= 0)) throw new Error(`torque must be at least 0 N m, got ${torque}`);
-    this.acrobot.setParams({ ...others, torques: [-torque, 0, torque] });
+    const { torque, friction, noise, encoders, ...others } = params;
+    for (const [name, value] of Object.entries({ torque, noise, encoders })) {
+      if (!(value >= 0 && value < Infinity)) {
+        throw new Error(`${name} must be finite and at least 0, got ${value}`);
+      }
+    }
+    const torques = [-torque, 0, torque];
+    this.acrobot.setParams({ ...others, torques, friction1: friction, friction2: friction });
     this.params = params;
   }
 
@@ -65,15 +87,15 @@ export class Game {
   step(level, push = null) {
     if (this.end !== null) return;
     const torque = torqueOf(level, this.params.torque);
-    const { terminated, truncated } = apply(this.acrobot, torque, push);
+    const { reward } = apply(this.acrobot, torque, push);
     this.levels.push(level);
     this.pushes.push(push);
     this.#rows.push(this.#row(torque));
     this.steps++;
     this.#forget();
     if (this.free) return;
-    if (terminated) this.end = "goal";
-    else if (truncated) this.end = "limit";
+    if (reward > GOAL) this.end = "goal";
+    else if (this.steps === LIMIT) this.end = "limit";
   }
 
   /** Goes on without an end. */
@@ -117,7 +139,8 @@ export class Game {
   between(part) {
     const before = this.#rows.at(-2);
     const dt = Math.fround(part * this.params.dt);
-    if (part === 1 || dt === 0 || before === undefined) return this.acrobot;
+    const isShort = this.params.dt < FRAME;
+    if (part === 1 || dt === 0 || isShort || before === undefined) return this.acrobot;
     const [theta1, theta2, dtheta1, dtheta2] = before;
     this.#shown.setParams({ ...this.acrobot.params, dt });
     this.#shown.state = { theta1, theta2, dtheta1, dtheta2 };

@@ -2,9 +2,8 @@
 // is predicted. All steps to come are predicted in a model: the picture shows where the tip will
 // be, and a state that differs shows that somebody has pushed or that a parameter has changed.
 
-import { Acrobot } from "./acrobot-rs/index.js";
 import { energyLaw } from "./acrobot-rs/policies.js";
-import { levelOf, torqueOf } from "./game.js";
+import { levelOf, newAcrobot, normal, torqueOf } from "./game.js";
 import { placesOf } from "./push.js";
 
 /** The part of the motor's torque for plans. The rest is for corrections. */
@@ -15,6 +14,13 @@ const [LEAD, LONGEST] = [0.16, 5];
 const SETTLED = 2;
 /** The largest deviation that is upright, rad and rad/s. */
 const UPRIGHT = 0.1;
+/**
+ * A state that differs by so much from the prediction, rad and rad/s, needs another one: with a
+ * plan, and before.
+ */
+const [PLANNED_ERROR, ERROR] = [0.05, 0.3];
+/** The parts of an angle's error that correct an estimated angle and, for each step, a velocity. */
+const [ANGLE, VELOCITY] = [0.5, 0.1];
 /** The most steps of a prediction, so that a tiny time step does not take minutes. */
 const STEPS = 3000;
 
@@ -30,6 +36,9 @@ export const isUpright = (state) =>
 
 const stateOf = (acrobot) => Object.values(acrobot.state);
 
+const setState = (acrobot, [theta1, theta2, dtheta1, dtheta2]) =>
+  (acrobot.state = { theta1, theta2, dtheta1, dtheta2 });
+
 export class PlannerPolicy {
   thinks = false;
   /** About the last plan, as a sentence. */
@@ -37,7 +46,10 @@ export class PlannerPolicy {
   #error = null;
   /** The steps to come, { state, level, tip }. The model is after the last one. */
   #ahead = [];
-  #model = new Acrobot();
+  #model = newAcrobot();
+  /** The acrobot as it was estimated, and the level since then. */
+  #estimate = newAcrobot();
+  #level = 0;
   #params = null;
   #plan = null;
   #gain;
@@ -54,16 +66,33 @@ export class PlannerPolicy {
     const { params } = game;
     const isNew = params !== this.#params;
     if (isNew) this.#take(game);
-    const state = game.numbers.slice(0, 4);
-    const isExpected = this.#ahead[0]?.state.every((value, i) => value === state[i]);
-    if (isNew || !isExpected || (this.#wasPulled && !isPulled)) this.#replan(game, isPulled);
+    const state = this.#look(game);
+    const expected = this.#ahead[0]?.state ?? [];
+    const most = this.#plan === null ? ERROR : PLANNED_ERROR;
+    const isExpected = deviation(state, expected).every((x) => Math.abs(x) < most);
+    if (isNew || !isExpected || (this.#wasPulled && !isPulled)) this.#replan(state, isPulled);
     else if (!this.thinks) this.#predict(1);
     else if (this.#ahead.length === 1) {
       this.#lead = Math.min(2 * this.#lead, LONGEST);
       this.#think();
     }
     this.#wasPulled = isPulled;
-    return this.#ahead.shift().level;
+    const step = this.#step - this.#ahead.length;
+    const { level } = this.#ahead.shift();
+    const isFollowed = this.#plan !== null;
+    this.#level = isFollowed ? levelOf(this.#torque(state, step), params.torque) : level;
+    return this.#level;
+  }
+
+  /** The game's state, or an estimate of it if the encoders are noisy. */
+  #look({ numbers, params: { encoders, dt, torque } }) {
+    if (encoders === 0) return numbers.slice(0, 4);
+    this.#estimate.stepTorque(torqueOf(this.#level, torque));
+    const predicted = stateOf(this.#estimate);
+    const errors = [0, 1].map((i) => turn(numbers[i] + encoders * normal() - predicted[i]));
+    const corrections = [ANGLE, ANGLE, VELOCITY / dt, VELOCITY / dt];
+    setState(this.#estimate, predicted.map((x, i) => x + corrections[i] * errors[i % 2]));
+    return stateOf(this.#estimate);
   }
 
   /** The tip's places to come, m. */
@@ -81,30 +110,31 @@ export class PlannerPolicy {
 
   #take({ params, acrobot }) {
     this.#params = params;
-    this.#model.setParams(acrobot.params);
+    for (const model of [this.#model, this.#estimate]) model.setParams(acrobot.params);
+    this.#estimate.state = acrobot.state;
     this.#plan = null;
   }
 
   /** Keeps the plan if it still ends upright. Otherwise asks for another one. */
-  #replan(game, isPulled) {
+  #replan(state, isPulled) {
     const done = Math.max(this.#step - this.#ahead.length, 0);
     this.thinks = false;
     this.#id++;
-    this.#from(game, done);
+    this.#from(state, done);
     if (isPulled) return this.#predict(1);
     if (this.#plan !== null) {
       const left = Math.max(this.#plan.torques.length - done, 0);
       this.#predict(left + this.#stepsOf(SETTLED));
       if (isUpright(stateOf(this.#model))) return;
       this.#plan = null;
-      this.#from(game, 0);
+      this.#from(state, 0);
     }
     this.#lead = LEAD;
     this.#think();
   }
 
-  #from(game, step) {
-    this.#model.state = game.acrobot.state;
+  #from(state, step) {
+    setState(this.#model, state);
     [this.#ahead, this.#step] = [[], step];
   }
 
@@ -148,7 +178,7 @@ export class PlannerPolicy {
     while (this.#ahead.length < length + count) {
       const state = stateOf(this.#model);
       const { torque } = this.#params;
-      const level = levelOf(this.#torque(state), torque);
+      const level = levelOf(this.#torque(state, this.#step), torque);
       this.#model.stepTorque(torqueOf(level, torque));
       this.#ahead.push({ state, level, tip: placesOf(this.#model.state, this.#params)[1] });
       this.#step++;
@@ -156,14 +186,14 @@ export class PlannerPolicy {
   }
 
   /** The torque at a state: of the plan, then of the regulator, and without both of energy. */
-  #torque(state) {
+  #torque(state, step) {
     if (this.#plan === null) return (energyLaw(this.#model) - 1) * this.#params.torque;
     const { torques, states, gains } = this.#plan;
-    const at = 4 * this.#step;
-    const isPlanned = this.#step < torques.length;
+    const at = 4 * step;
+    const isPlanned = step < torques.length;
     const target = isPlanned ? states.subarray(at, at + 4) : [Math.PI, 0, 0, 0];
     const gain = isPlanned ? gains.subarray(at, at + 4) : this.#gain;
-    const torque = isPlanned ? torques[this.#step] : 0;
+    const torque = isPlanned ? torques[step] : 0;
     return deviation(state, target).reduce((sum, x, i) => sum + gain[i] * x, torque);
   }
 }

@@ -8,9 +8,18 @@ const RIGHT_ANGLES = ["−π", "−π/2", "0", "π/2", "π"].map((t, i) => [(i /
 /** A text whose negative numbers have the minus sign. */
 export const minus = (text) => text.replace(/-(?=[\dI])/g, "−");
 
+const colors = new Map();
+
+/** A colour of the style, which takes long to find. */
 export function color(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  if (!colors.has(name)) {
+    colors.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+  }
+  return colors.get(name);
 }
+
+const scheme = globalThis.matchMedia?.("(prefers-color-scheme: dark)");
+scheme?.addEventListener("change", () => colors.clear());
 
 /**
  * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of

@@ -12,9 +12,21 @@ export const PARAMETERS = [
   ["length1", "Length of link 1", "m", 1, 3, 0.05, "Its centre of mass stays."],
   ["length2", "Length of link 2", "m", 1, 3, 0.05, "Changes only the picture and the tip height."],
   ["gravity", "Gravity", "m/s²", 9.8, 25, 0.1, "", 0],
+  ["friction", "Friction of both joints", "N m s/rad", 0, 1, 0.01, "", 0],
+  ["noise", "Noise of the motor", "N m", 0, 2, 0.05, "A standard deviation.", 0],
+  ["encoders", "Noise of the encoders", "rad", 0, 0.05, 0.001, "With it the planner sees no " +
+    "velocities, and estimates them.", 0],
+  ["centerOfMass1", "Centre of mass of link 1", "m", 0.5, 2, 0.05, "", 0],
+  ["centerOfMass2", "Centre of mass of link 2", "m", 0.5, 2, 0.05, "", 0],
+  ["inertia1", "Inertia of link 1", "kg m²", 1, 2, 0.01, "", 0],
+  ["inertia2", "Inertia of link 2", "kg m²", 1, 2, 0.01, "", 0],
+  ["maxVelocity1", "Bound of θ1′", "rad/s", 4 * Math.PI, 100, 1],
+  ["maxVelocity2", "Bound of θ2′", "rad/s", 9 * Math.PI, 100, 1],
 ].map(([name, label, unit, value, end, step, hint = "", start = step]) => {
   return { name, label, unit, value, end, step, hint, start };
 });
+/** So many of them are always shown. */
+export const FIRST = 10;
 
 export const DEFAULTS = {
   dynamics: "book",
@@ -23,6 +35,22 @@ export const DEFAULTS = {
 
 /** A motor and a time step with which holding upright is easy to watch. */
 export const BALANCE = { ...DEFAULTS, dt: 0.02, torque: 5 };
+
+const UNBOUNDED = { maxVelocity1: Infinity, maxVelocity2: Infinity };
+/** Machines by name: that of dm_control, and RealAIGym's design C.1 without dry friction. */
+export const MACHINES = {
+  "Gymnasium": DEFAULTS,
+  "Gymnasium, 5 N m": BALANCE,
+  "dm_control": {
+    ...DEFAULTS, ...UNBOUNDED, dt: 0.01, torque: 2, gravity: 9.81, friction: 0.05,
+    inertia1: 0.09557031, inertia2: 0.09530365,
+  },
+  "RealAIGym": {
+    ...DEFAULTS, ...UNBOUNDED, dt: 0.01, torque: 6, gravity: 9.81, length1: 0.2, length2: 0.3,
+    mass1: 0.52346, mass2: 0.625568, centerOfMass1: 0.2, centerOfMass2: 0.255693,
+    inertia1: 0.0109488, inertia2: 0.00997089,
+  },
+};
 
 /** The seed in a text. Throws an `Error` with the reason if the text is not a seed. */
 export function parseSeed(text) {
