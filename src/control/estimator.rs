@@ -204,7 +204,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         };
         let mut y: [A::Scalar; 4] = self.model.state().into();
         let mut params = *self.model.params();
-        for (i, angle) in angles.into_iter().enumerate() {
+        angles.into_iter().enumerate().for_each(|(i, angle)| {
             let error = wrap(angle - y[i]);
             let square = error * error;
             // The variance of the torque follows the errors.
@@ -237,7 +237,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
                 }
                 *place = within(*place + part * error, parameter.limits);
             }
-        }
+        });
         self.of_state = finite(of_state);
         if K > 0 {
             // Parameters that no machine has change nothing.
@@ -288,11 +288,11 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         add_outer(&mut of_state, self.torque, &b, &b);
         symmetrize(&mut of_state);
         let [angle, velocity] = IN_A_STEP.map(|x| A::Scalar::from_f64(x * x));
-        for (i, noise) in [angle, angle, velocity, velocity].into_iter().enumerate() {
+        [angle, angle, velocity, velocity].into_iter().enumerate().for_each(|(i, noise)| {
             // Rounding may have made it negative.
             let own = if of_state[i][i] > zero { of_state[i][i] } else { zero };
             of_state[i][i] = own + noise;
-        }
+        });
         (self.model, self.of_state) = (next, finite(of_state));
         Ok(())
     }
