@@ -19,19 +19,9 @@ pub enum Dynamics {
     Nips,
 }
 
-/// A coefficient of friction for each joint. Only arithmetics [with
-/// friction](crate::arithmetic::Damped) accept one that is not 0.
-///
-/// ```
-/// use acrobot::arithmetic::Damped;
-/// use acrobot::physics::{Joints, Pendulum};
-/// use acrobot::{Fast, Params, State};
-///
-/// let friction = Joints { joint1: 0.05, joint2: 0.05 }; // N m s/rad
-/// let params = Params { friction, ..Params::DEFAULT };
-/// Pendulum::<Damped<Fast>>::new(params, State::HANGING)?.step(1.0)?;
-/// # Ok::<(), acrobot::Error>(())
-/// ```
+/// A coefficient of [friction](crate::guide::equations#friction-and-rotors) for each joint. Only
+/// arithmetics with friction, such as [`Damped<Fast>`](crate::arithmetic::Damped), accept one that
+/// is not 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
