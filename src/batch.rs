@@ -57,21 +57,6 @@ use work::Work;
 /// With the `serde` feature a batch can be saved as a whole, with the header of an
 /// [acrobot's](crate::Acrobot#snapshots) snapshot, and continues bit-identically with any `N`. It
 /// is a sequence, the settings and then each acrobot, so it cannot be flattened into a struct.
-///
-#[cfg_attr(feature = "serde", doc = "```")]
-#[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::Fast;
-/// use acrobot::batch::{Batch, Block};
-/// use acrobot::numpy::Pcg64;
-///
-/// let memory = || ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
-/// let batch = Batch::<Fast, _>::new(42, memory()).unwrap();
-/// let bytes = postcard::to_stdvec(&batch)?;
-/// let mut reader = postcard::Deserializer::from_bytes(&bytes);
-/// let loaded = Batch::<Fast, _>::from_snapshot(memory(), &mut reader)?;
-/// assert_eq!(loaded.member(19), batch.member(19));
-/// # Ok::<(), postcard::Error>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Batch<A: Arithmetic, S, T = Gymnasium, const N: usize = 16> {
     settings: Settings<A, T>,

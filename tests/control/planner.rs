@@ -213,10 +213,10 @@ fn no_velocity_of_a_plan_reaches_its_bound() -> Result<(), Box<dyn Error>> {
             [first.max(state.dtheta1.abs()), second.max(state.dtheta2.abs())]
         }))
     };
-    let cost = Cost::new(&params);
-    let [first, second] = fastest(Planner::with_cost(params, 12.0, cost)?)?;
+    let planner = Planner::new(params, 12.0)?;
+    let [first, second] = fastest(planner.clone())?;
     assert!(first < 5.0 && second < 9.0, "{first} {second}");
-    let [first, second] = fastest(Planner::with_cost(params, 12.0, cost)?.for_simulation())?;
+    let [first, second] = fastest(planner.for_simulation())?;
     assert!(first == 5.0 || second == 9.0, "{first} {second}");
     Ok(())
 }
@@ -224,40 +224,26 @@ fn no_velocity_of_a_plan_reaches_its_bound() -> Result<(), Box<dyn Error>> {
 /// Each weight lowers what it weights.
 #[test]
 fn a_weight_lowers_what_it_weights() -> Result<(), Box<dyn Error>> {
-    type Term = fn(&[Knot<f64>]) -> f64;
+    /// Of a knot and the one before.
+    type Term = fn(&Knot<f64>, &Knot<f64>) -> f64;
     let params = Params { dt: 0.02, ..Params::DEFAULT };
     let plain = Cost::new(&params);
     let mut guess = [Knot::EMPTY; 200];
     Planner::<Portable>::new(params, 6.0)?.guess(State::HANGING, &mut Pcg64::new(3), &mut guess)?;
     let sum = |cost, term: Term| {
         let mut plan = guess;
-        Planner::<Portable>::with_cost(params, 6.0, cost)?.improve(
-            State::HANGING,
-            100,
-            &mut plan,
-        )?;
-        Ok::<_, Box<dyn Error>>(term(&plan))
+        let mut planner = Planner::<Portable>::with_cost(params, 6.0, cost)?;
+        planner.improve(State::HANGING, 100, &mut plan)?;
+        Ok::<f64, Box<dyn Error>>(plan.windows(2).map(|knots| term(&knots[1], &knots[0])).sum())
     };
     let cases: [(Cost, Term); 7] = [
-        (Cost { torque: 1.0, ..plain }, |plan| plan.iter().map(|k| k.torque.powi(2)).sum()),
-        (Cost { torque_change: 1.0, ..plain }, |plan| {
-            plan.windows(2).map(|k| (k[1].torque - k[0].torque).powi(2)).sum()
-        }),
-        (Cost { power: 1.0, ..plain }, |plan| {
-            plan.iter().map(|k| (k.torque * k.state.dtheta2).abs()).sum()
-        }),
-        (Cost { velocities: [1.0, 0.0], ..plain }, |plan| {
-            plan.iter().map(|k| k.state.dtheta1.powi(2)).sum()
-        }),
-        (Cost { velocities: [0.0, 1.0], ..plain }, |plan| {
-            plan.iter().map(|k| k.state.dtheta2.powi(2)).sum()
-        }),
-        (Cost { angles: [20.0, 0.0], ..plain }, |plan| {
-            plan.iter().map(|k| 2.0 + 2.0 * libm::cos(k.state.theta1)).sum()
-        }),
-        (Cost { angles: [0.0, 20.0], ..plain }, |plan| {
-            plan.iter().map(|k| 2.0 - 2.0 * libm::cos(k.state.theta2)).sum()
-        }),
+        (Cost { torque: 1.0, ..plain }, |k, _| k.torque.powi(2)),
+        (Cost { torque_change: 1.0, ..plain }, |k, before| (k.torque - before.torque).powi(2)),
+        (Cost { power: 1.0, ..plain }, |k, _| (k.torque * k.state.dtheta2).abs()),
+        (Cost { velocities: [1.0, 0.0], ..plain }, |k, _| k.state.dtheta1.powi(2)),
+        (Cost { velocities: [0.0, 1.0], ..plain }, |k, _| k.state.dtheta2.powi(2)),
+        (Cost { angles: [20.0, 0.0], ..plain }, |k, _| 2.0 + 2.0 * libm::cos(k.state.theta1)),
+        (Cost { angles: [0.0, 20.0], ..plain }, |k, _| 2.0 - 2.0 * libm::cos(k.state.theta2)),
     ];
     for (i, (cost, term)) in cases.into_iter().enumerate() {
         let [without, with] = [sum(plain, term)?, sum(cost, term)?];
