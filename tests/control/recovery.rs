@@ -10,8 +10,8 @@ use crate::cast;
 
 const REST: f64 = 20.0; // s after a plan
 
-/// Whether the machine that follows a plan is upright in the last second.
-fn holds<A: Arithmetic>(
+/// Whether the machine that follows a plan is upright in the last second, within 0.01 rad.
+pub fn holds<A: Arithmetic>(
     planner: &Planner<A>,
     mut machine: Pendulum<A>,
     plan: &[Knot<A::Scalar>],
@@ -23,7 +23,7 @@ fn holds<A: Arithmetic>(
     for i in 0..steps {
         machine.step(saturate(planner.follow(plan, i, machine.state()), limit)).unwrap();
         let [x1, x2, ..] = difference(machine.state(), State::UPRIGHT).map(Real::to_f64);
-        if x1.abs().max(x2.abs()) > 0.1 {
+        if x1.abs().max(x2.abs()) > 0.01 {
             upright = i + 1;
         }
     }
