@@ -48,23 +48,7 @@ pub struct Noise<S = f64> {
 /// [`PARAMETERS`](Self::PARAMETERS).
 ///
 /// In each `dt` of the parameters call [`measure`](Self::measure), decide, and call
-/// [`step`](Self::step).
-///
-/// ```
-/// use acrobot::control::{Estimator, Noise};
-/// use acrobot::{Fast, Params};
-///
-/// let params = Params { dt: 0.002, ..Params::DEFAULT };
-/// let noise = Noise { angle: 1.8 / 4096.0, torque: 0.05 };
-/// let mut estimator = Estimator::<Fast>::new(params, noise)?;
-/// for tick in 0..500 {
-///     let angle = 0.01 * (tick as f32 * 0.002); // 0.01 rad/s
-///     estimator.measure([angle, 0.0])?;
-///     estimator.step(0.0)?;
-/// }
-/// assert!((estimator.state().dtheta1 - 0.01).abs() < 0.01);
-/// # Ok::<(), acrobot::control::ControlError>(())
-/// ```
+/// [`step`](Self::step): [an example](crate::guide::control#a-machine-that-you-measure).
 #[derive(Clone, Debug)]
 pub struct Estimator<A: Arithmetic, const K: usize = 0> {
     model: Pendulum<A>,
