@@ -68,18 +68,8 @@ impl<O> Step<O> {
 /// the setters reject; postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
 /// [`TimeLimit`](crate::TimeLimit), is the size of a buffer for postcard.
 ///
-/// `Params`, `State` and [`Pcg64`] can also be saved alone, without a version.
-///
-#[cfg_attr(feature = "serde", doc = "```")]
-#[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::{Acrobot, Fast};
-///
-/// let acrobot = Acrobot::<Fast>::new(42);
-/// let text = serde_json::to_string(&acrobot)?;
-/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":5,"task":"gymnasium","#));
-/// assert_eq!(serde_json::from_str::<Acrobot<Fast>>(&text)?, acrobot);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
+/// `Params`, `State` and [`Pcg64`] can also be saved alone, without a version. [An
+/// example](crate::guide::embedded_topics#through-a-reset).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Acrobot<A: Arithmetic, T = Gymnasium, R = Pcg64> {
     pendulum: Pendulum<A>,

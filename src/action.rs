@@ -9,15 +9,6 @@ use crate::numpy::integers;
 
 /// One of the three torques between the links, numbered 0, 1 and 2 as in Gymnasium.
 /// [`Params::torques`](crate::Params::torques) has their values in N m.
-///
-/// ```
-/// use acrobot::Action;
-///
-/// assert_eq!(Action::try_from(2)?, Action::Positive);
-/// assert_eq!(u8::from(Action::Zero), 1);
-/// assert!(Action::try_from(3).is_err());
-/// # Ok::<(), acrobot::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

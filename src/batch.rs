@@ -2,21 +2,8 @@
 //!
 //! A [`Batch`] steps acrobots side by side, with SIMD and without a heap: it borrows or owns
 //! arrays, slices or `Vec`s. With the feature `alloc`, `VecBatch` also owns the memory of the
-//! results.
-//!
-//! ```
-//! use acrobot::Fast;
-//! use acrobot::batch::{Batch, Block, StepBuffers};
-//! use acrobot::numpy::Pcg64;
-//!
-//! let mut batch = Batch::<Fast, _>::new(42, ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50]))?;
-//! let (mut rewards, mut terminated, mut truncated) = ([0.0; 50], [false; 50], [false; 50]);
-//! let mut observations = [[0.0; 6]; 50];
-//! let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
-//! batch.step_into(&[2_u8; 50], buffers.with_observations(&mut observations))?;
-//! assert_eq!(rewards, [-1.0; 50]);
-//! # Ok::<(), acrobot::Error>(())
-//! ```
+//! results. The guide has examples [with `Vec`s](crate::guide::rust#many-at-once) and [with
+//! arrays](crate::guide::embedded_topics#the-physics-alone-or-several-acrobots).
 
 mod block;
 mod buffers;
@@ -68,26 +55,8 @@ use work::Work;
 /// # Snapshots
 ///
 /// With the `serde` feature a batch can be saved as a whole, with the header of an
-/// [acrobot's](crate::Acrobot#snapshots) snapshot. A loaded batch continues bit-identically, with
-/// any `N` and on any machine.
-///
-/// Any serde format can hold it as a field or an element. It is a sequence, the settings and then
-/// each acrobot, so it cannot be flattened into a struct.
-///
-#[cfg_attr(feature = "serde", doc = "```")]
-#[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::Fast;
-/// use acrobot::batch::{Batch, Block};
-/// use acrobot::numpy::Pcg64;
-///
-/// let memory = || ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
-/// let batch = Batch::<Fast, _>::new(42, memory()).unwrap();
-/// let bytes = postcard::to_stdvec(&batch)?;
-/// let mut reader = postcard::Deserializer::from_bytes(&bytes);
-/// let loaded = Batch::<Fast, _>::from_snapshot(memory(), &mut reader)?;
-/// assert_eq!(loaded.member(19), batch.member(19));
-/// # Ok::<(), postcard::Error>(())
-/// ```
+/// [acrobot's](crate::Acrobot#snapshots) snapshot, and continues bit-identically with any `N`. It
+/// is a sequence, the settings and then each acrobot, so it cannot be flattened into a struct.
 #[derive(Clone, Debug)]
 pub struct Batch<A: Arithmetic, S, T = Gymnasium, const N: usize = 16> {
     settings: Settings<A, T>,

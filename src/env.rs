@@ -1,20 +1,5 @@
-//! Gymnasium's interface: environments, wrappers and spaces of observations.
-//!
-//! ```
-//! use acrobot::env::Env;
-//! use acrobot::numpy::Pcg64;
-//! use acrobot::{Acrobot, Action, Portable, TimeLimit};
-//!
-//! let mut env: Box<dyn Env> = Box::new(TimeLimit::of(Acrobot::<Portable>::new(0)));
-//! let mut rng = Pcg64::new(42); // env.action_space.seed(42)
-//! let observation = env.reset_with_seed(42);
-//! assert!(env.observation_space().contains(&observation));
-//! for _ in 0..1000 {
-//!     if env.step(Action::sample(&mut rng)).done() {
-//!         env.reset();
-//!     }
-//! }
-//! ```
+//! Gymnasium's interface: environments, wrappers and spaces of observations, with [an
+//! example](crate::guide::rust#spaces-wrappers-rendering).
 
 mod space;
 

@@ -24,26 +24,7 @@
 //! assert_eq!(env.elapsed_steps(), 94);
 //! ```
 //!
-//! [Control](control) swings it up and holds it upright, here with 8 N m:
-//!
-//! ```
-//! use acrobot::control::{Knot, Planner};
-//! use acrobot::numpy::Pcg64;
-//! use acrobot::physics::Pendulum;
-//! use acrobot::{Fast, Params, State};
-//!
-//! let params = Params { dt: 0.02, ..Params::DEFAULT };
-//! let mut planner = Planner::<Fast>::new(params, 8.0)?; // N m
-//! let mut memory = [Knot::EMPTY; 300];
-//! let plan = planner.plan(State::HANGING, 64, &mut Pcg64::new(1), &mut memory)?;
-//!
-//! let mut pendulum = Pendulum::<Fast>::new(params, State::HANGING)?;
-//! for i in 0..500 {
-//!     pendulum.step(planner.follow(plan, i, pendulum.state()))?; // after the plan: holds
-//! }
-//! assert!(pendulum.tip_height() > 1.999); // m
-//! # Ok::<(), acrobot::control::NoPlan>(())
-//! ```
+//! [Control](guide::control#swing-up-by-a-plan) swings it up by a plan and holds it upright.
 //!
 //! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in C](guide::c),
 //! [in a browser](guide::wasm) or [in Python](guide::python).

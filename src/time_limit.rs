@@ -13,17 +13,6 @@ use crate::task::{ResetOptions, Task, episode};
 
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` from the
 /// limit on.
-///
-/// ```
-/// use acrobot::{Acrobot, Action, Fast, TimeLimit};
-///
-/// let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(42));
-/// let mut length = 1;
-/// while !acrobot.step(Action::Zero).done() {
-///     length += 1;
-/// }
-/// assert_eq!(length, 500);
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

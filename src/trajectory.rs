@@ -7,18 +7,12 @@
 //!
 //! let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(42));
 //! let mut trajectory = Trajectory::<f32, 100>::new();
-//! for action in Action::ALL {
-//!     trajectory.step(&mut acrobot, action); // acrobot.step(action), recorded
+//! trajectory.step(&mut acrobot, Action::Zero); // acrobot.step(Action::Zero), recorded
+//!
+//! let mut line = heapless::String::<200>::new();
+//! for row in trajectory.rows() {
+//!     write!(line, "{row}")?; // without a heap; `write_csv` writes all lines
 //! }
-//!
-//! let mut csv = String::new();
-//! trajectory.write_csv(&mut csv)?;
-//! assert_eq!(csv.lines().count(), 1 + 3);
-//!
-//! let last = trajectory.rows().last().unwrap();
-//! let mut line = heapless::String::<200>::new(); // row by row, without a heap
-//! write!(line, "{last}")?;
-//! assert!(csv.trim_end().ends_with(line.as_str()));
 //! # Ok::<(), core::fmt::Error>(())
 //! ```
 //!

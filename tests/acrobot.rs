@@ -2,10 +2,11 @@
 //! live changes, sizes and auto-traits.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Micro, Reference};
+use acrobot::batch::{Block, LaneParams};
 use acrobot::control::ControlError;
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, Pendulum};
-use acrobot::task::{GymnasiumV0, ResetBounds, Task};
+use acrobot::task::{Draws, GymnasiumV0, ResetBounds, Task};
 use acrobot::trajectory::{Trajectory, Transition};
 use acrobot::{
     Acrobot, Action, Error, Fast, Params, Portable, REWARD_THRESHOLD, ResetOptions, State, Step,
@@ -27,6 +28,8 @@ const _: () = {
     assert!(size_of::<Fast>() == 0);
     assert!(size_of::<SeedSequence>() == 48);
     assert!(size_of::<Transition<f32>>() <= 44);
+    assert!(size_of::<Block<Fast, 1>>() == 64 && size_of::<Block<Fast, 16>>() == 640);
+    assert!(size_of::<LaneParams<Fast, 16>>() == 2240 && size_of::<Draws<f32>>() == 424);
     is_send_sync_clone::<Acrobot<Fast>>();
     is_send_sync_clone::<Pendulum<Fast>>();
     is_send_sync_clone::<Acrobot<Host>>();

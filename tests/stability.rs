@@ -1,10 +1,10 @@
 //! Promise 2, the same bits everywhere: digests, which the program `bits` compares on other
 //! targets. Changing one takes a breaking release.
 
-use acrobot::arithmetic::{Damped, Micro, Reference};
+use acrobot::Fast;
+use acrobot::arithmetic::{Damped, Reference};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::{Fast, Portable};
-use bits::{Digest, episodes, plan, training};
+use bits::{Digest, episodes};
 
 /// Friction and the task are two things: the initial states, rewards and the goal stay Gymnasium's,
 /// too.
@@ -35,42 +35,8 @@ fn libm_has_the_sines_of_portables_digests() {
     );
 }
 
+/// Of arithmetics, friction, tasks, batches, a training and a plan.
 #[test]
-fn the_shared_episodes_are_stable() {
-    let found = [
-        episodes::sixteen::<Reference>(),
-        episodes::sixteen::<Portable>(),
-        episodes::sixteen::<Fast>(),
-        episodes::sixteen::<Micro>(),
-    ];
-    let expected = [episodes::REFERENCE, episodes::PORTABLE, episodes::FAST, episodes::MICRO];
-    assert!(found == expected, "{found:#018x?}");
-}
-
-#[test]
-fn subnormal_numbers_friction_and_other_tasks_are_stable() {
-    let found =
-        (episodes::subnormal(), episodes::damped(), episodes::swingup(), episodes::balance());
-    let expected = (episodes::SUBNORMAL, episodes::DAMPED, episodes::SWINGUP, episodes::BALANCE);
-    assert!(found == expected, "{found:#018x?}");
-}
-
-/// The program `bits` tries other widths.
-#[test]
-fn batches_are_stable() {
-    let found = episodes::batches::<16, 2, 1>();
-    assert!(found == episodes::BATCHES, "{found:#018x?}");
-}
-
-#[test]
-fn the_shared_training_is_stable() {
-    let found = training::weights();
-    assert!(found == training::WEIGHTS, "{found:#018x}");
-}
-
-/// A plan and its gains, and the states of an acrobot that follows it.
-#[test]
-fn the_shared_plan_is_stable() {
-    let found = plan::planned();
-    assert!(found == plan::PLAN, "{found:#018x}");
+fn the_shared_digests_are_stable() {
+    bits::compare(|name, found, expected| assert!(found == expected, "{name}: {found:#018x?}"));
 }

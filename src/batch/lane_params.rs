@@ -6,14 +6,8 @@ use crate::math::{Lanes, Real};
 use crate::physics::{Defaults, Dynamics, Model, Params, default_model, model};
 use crate::task::Draws;
 
-/// The memory for the parameters of `N` acrobots, where each has its own.
-///
-/// ```
-/// use acrobot::Fast;
-/// use acrobot::batch::LaneParams;
-///
-/// assert_eq!(size_of::<LaneParams<Fast, 16>>(), 2240);
-/// ```
+/// The memory for the parameters of `N` acrobots, where each has its own: 2240 bytes for 16 in
+/// `Fast`.
 // Aligned, because an SSE instruction can read only aligned numbers from memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]

@@ -55,7 +55,8 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Serialize for Bat
 }
 
 impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
-    /// Loads a [snapshot](Self#snapshots) of a batch into memory for as many acrobots.
+    /// Loads a [snapshot](Self#snapshots) of a batch into memory for as many acrobots, for example
+    /// with `&mut postcard::Deserializer::from_bytes(&bytes)`.
     ///
     /// # Errors
     ///

@@ -11,27 +11,28 @@ use crate::task::Draws;
 /// has its own, from which resets draw. Their lengths must never change.
 ///
 /// ```
+/// use acrobot::Fast;
 /// use acrobot::batch::{Batch, Block, LaneParams};
 /// use acrobot::numpy::Pcg64;
 /// use acrobot::task::Draws;
-/// use acrobot::{Fast, Params};
 ///
 /// let mut blocks = vec![Block::EMPTY; 4]; // 16 acrobots in each
-/// let mut generators = vec![Pcg64::UNSEEDED; 50];
-/// let shared = (&mut blocks[..], &mut generators[..]);
-/// assert_eq!(Batch::<Fast, _>::new(42, shared)?.len(), 50);
-///
-/// let lane_params = [LaneParams::default(); 4];
-/// let own = ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50], lane_params, Draws::NONE);
-/// Batch::<Fast, _>::new(42, own)?.set_params_of(49, Params::DEFAULT)?;
+/// let generators = [Pcg64::UNSEEDED; 50];
+/// let memory = (&mut blocks[..], generators, [LaneParams::default(); 4], Draws::NONE);
+/// assert_eq!(Batch::<Fast, _>::new(42, memory)?.len(), 50);
 /// # Ok::<(), acrobot::Error>(())
 /// ```
-pub trait Storage<A: Arithmetic, const N: usize>: SealedStorage<A, N> {}
+pub trait Storage<A: Arithmetic, const N: usize> {
+    #[doc(hidden)]
+    fn slices(&self) -> Slices<'_, A, N>;
 
-impl<A: Arithmetic, S: SealedStorage<A, N>, const N: usize> Storage<A, N> for S {}
+    #[doc(hidden)]
+    fn slices_mut(&mut self) -> SlicesMut<'_, A, N>;
+}
 
 /// The blocks, one for each `N` acrobots, the generators, one for each acrobot, and the parameters:
-/// one [`LaneParams`] for each block, or none where acrobots share them, and what resets draw.
+/// one [`LaneParams`] for each block, or none where acrobots share them, and what resets draw. No
+/// path outside of the crate names it, which seals [`Storage`].
 #[derive(Debug)]
 pub struct Slices<'a, A: Arithmetic, const N: usize> {
     pub blocks: &'a [Block<A, N>],
@@ -49,14 +50,7 @@ pub struct SlicesMut<'a, A: Arithmetic, const N: usize> {
     pub draws: Option<&'a mut Draws<A::Scalar>>,
 }
 
-/// What only this crate uses of a [`Storage`], and only it implements.
-pub trait SealedStorage<A: Arithmetic, const N: usize> {
-    fn slices(&self) -> Slices<'_, A, N>;
-
-    fn slices_mut(&mut self) -> SlicesMut<'_, A, N>;
-}
-
-impl<A, B, G, const N: usize> SealedStorage<A, N> for (B, G)
+impl<A, B, G, const N: usize> Storage<A, N> for (B, G)
 where
     A: Arithmetic,
     B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
@@ -81,7 +75,7 @@ where
     }
 }
 
-impl<A, B, G, P, const N: usize> SealedStorage<A, N> for (B, G, P, Draws<A::Scalar>)
+impl<A, B, G, P, const N: usize> Storage<A, N> for (B, G, P, Draws<A::Scalar>)
 where
     A: Arithmetic,
     B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,

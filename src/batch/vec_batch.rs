@@ -23,21 +23,7 @@ type InVecs<A, T, const N: usize> = Batch<A, Memory<A, N>, T, N>;
 /// A [`Batch`] of another length may replace the one inside. The next results need new memory:
 /// without it a step returns [`Error::OutOfMemory`], and the observations are empty.
 ///
-/// ```
-/// use acrobot::Fast;
-/// use acrobot::batch::VecBatch;
-/// use acrobot::numpy::SeedSequence;
-///
-/// let mut batch = VecBatch::<Fast>::new(SeedSequence::new(42), 1024)?;
-/// for _ in 0..100 {
-///     let results = batch.step(&[2_u8; 1024])?;
-///     assert_eq!(results.observations.len(), 1024);
-/// }
-/// # Ok::<(), acrobot::Error>(())
-/// ```
-///
-/// Each acrobot can have its own parameters: [an example that draws
-/// them](crate::guide::rust#many-at-once).
+/// [An example](crate::guide::rust#many-at-once), also with own parameters for each acrobot.
 #[derive(Clone, Debug)]
 pub struct VecBatch<A: Arithmetic, T: Task = Gymnasium, const N: usize = 16> {
     batch: InVecs<A, T, N>,

@@ -5,7 +5,8 @@ use crate::math::{Real, SinCos};
 use crate::physics::{Params, positions};
 
 /// The weights of what a plan costs: the sum of all terms, over all its steps, and of its end. A
-/// larger weight makes its term smaller, at the expense of the others.
+/// larger weight makes its term smaller, at the expense of the others: [a table of what each
+/// does](crate::guide::control#what-a-plan-costs).
 ///
 /// ```
 /// use acrobot::control::{Cost, Planner};
@@ -21,27 +22,22 @@ use crate::physics::{Params, positions};
 #[repr(C)] // for bindings/c
 pub struct Cost<S = f64> {
     /// Of 2 − 2 cos x, for the deviation x of each angle from upright: x² where it is small. 1/s.
-    /// Raised, the links are upright for longer.
     pub angles: [S; 2],
-    /// Of θ̇1² and θ̇2², s/rad². Raised, the acrobot swings more slowly.
+    /// Of θ̇1² and θ̇2², s/rad².
     pub velocities: [S; 2],
-    /// Of the square of the torque, 1/((N m)² s). Raised, the acrobot needs less of its motor, and
-    /// more time.
+    /// Of the square of the torque, 1/((N m)² s).
     pub torque: S,
-    /// Of the square of the torque's change from one step to the next, 1/(N m)². Raised, the torque
-    /// is smoother.
+    /// Of the square of the torque's change from one step to the next, 1/(N m)².
     pub torque_change: S,
-    /// Of the absolute value of the motor's power, 1/J. Raised, the motor does less work and brakes
-    /// less.
+    /// Of the absolute value of the motor's power, 1/J.
     pub power: S,
-    /// Of the time that the tip is below `height`, 1/s. Raised, the acrobot is up earlier.
+    /// Of the time that the tip is below `height`, 1/s.
     pub below: S,
     /// The height of the tip above the fixed joint, m, from which on `below` costs nothing.
     pub height: S,
     /// `below` costs half where the tip is so far below `height`, m; above 0.
     pub margin: S,
-    /// Of ln(1 + e), where e is 1 for an end that the regulator surely holds. Raised, more plans
-    /// end there.
+    /// Of ln(1 + e), where e is 1 for an end that the regulator surely holds.
     pub arrival: S,
 }
 

@@ -5,15 +5,6 @@ use crate::physics::{State, wrap};
 
 /// The deviation of `state` from `target`, rad and rad/s. Differences of angles are wrapped to
 /// \[−π, π\], so it is continuous upright, where θ1 jumps from π to −π.
-///
-/// ```
-/// use acrobot::control::difference;
-/// use acrobot::State;
-///
-/// let beyond = State { theta1: -3.0, ..State::UPRIGHT };
-/// let x: [f64; 4] = difference(beyond, State::UPRIGHT);
-/// assert!((x[0] - 0.14159).abs() < 1e-5);
-/// ```
 #[must_use]
 pub fn difference<S: Real>(state: State<S>, target: State<S>) -> [S; 4] {
     // Wrapped first, so that no difference overflows.

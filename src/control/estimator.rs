@@ -48,23 +48,7 @@ pub struct Noise<S = f64> {
 /// [`PARAMETERS`](Self::PARAMETERS).
 ///
 /// In each `dt` of the parameters call [`measure`](Self::measure), decide, and call
-/// [`step`](Self::step).
-///
-/// ```
-/// use acrobot::control::{Estimator, Noise};
-/// use acrobot::{Fast, Params};
-///
-/// let params = Params { dt: 0.002, ..Params::DEFAULT };
-/// let noise = Noise { angle: 1.8 / 4096.0, torque: 0.05 };
-/// let mut estimator = Estimator::<Fast>::new(params, noise)?;
-/// for tick in 0..500 {
-///     let angle = 0.01 * (tick as f32 * 0.002); // 0.01 rad/s
-///     estimator.measure([angle, 0.0])?;
-///     estimator.step(0.0)?;
-/// }
-/// assert!((estimator.state().dtheta1 - 0.01).abs() < 0.01);
-/// # Ok::<(), acrobot::control::ControlError>(())
-/// ```
+/// [`step`](Self::step): [an example](crate::guide::control#a-machine-that-you-measure).
 #[derive(Clone, Debug)]
 pub struct Estimator<A: Arithmetic, const K: usize = 0> {
     model: Pendulum<A>,
@@ -204,7 +188,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         };
         let mut y: [A::Scalar; 4] = self.model.state().into();
         let mut params = *self.model.params();
-        for (i, angle) in angles.into_iter().enumerate() {
+        angles.into_iter().enumerate().for_each(|(i, angle)| {
             let error = wrap(angle - y[i]);
             let square = error * error;
             // The variance of the torque follows the errors.
@@ -237,7 +221,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
                 }
                 *place = within(*place + part * error, parameter.limits);
             }
-        }
+        });
         self.of_state = finite(of_state);
         if K > 0 {
             // Parameters that no machine has change nothing.
@@ -288,11 +272,11 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         add_outer(&mut of_state, self.torque, &b, &b);
         symmetrize(&mut of_state);
         let [angle, velocity] = IN_A_STEP.map(|x| A::Scalar::from_f64(x * x));
-        for (i, noise) in [angle, angle, velocity, velocity].into_iter().enumerate() {
+        [angle, angle, velocity, velocity].into_iter().enumerate().for_each(|(i, noise)| {
             // Rounding may have made it negative.
             let own = if of_state[i][i] > zero { of_state[i][i] } else { zero };
             of_state[i][i] = own + noise;
-        }
+        });
         (self.model, self.of_state) = (next, finite(of_state));
         Ok(())
     }

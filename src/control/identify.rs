@@ -216,14 +216,14 @@ impl Evidence {
         let vectors = diagonalize(&mut scaled);
         let (mut values, mut inverse, mut undetermined) = ([0.0; N], [0.0; N], 0);
         let (mut weakest, mut least) = ([0.0; N], f64::INFINITY);
-        for (i, vector) in vectors.into_iter().enumerate() {
+        for (i, vector) in vectors.iter().enumerate() {
             let evidence = scaled[i][i];
             if evidence < least {
-                (weakest, least) = (vector, evidence);
+                (weakest, least) = (*vector, evidence);
             }
             if evidence > UNDETERMINED {
-                let along = sum_of_products(&vector, &sums) / evidence;
-                for (j, x) in vector.into_iter().enumerate() {
+                let along = sum_of_products(vector, &sums) / evidence;
+                for (j, x) in vector.iter().enumerate() {
                     values[j] += x * along;
                     inverse[j] += x * x / evidence;
                 }

@@ -28,18 +28,6 @@ pub struct Forces<S = f64> {
 /// 1980). For [`Dynamics::Nips`] the torques are those of its equations; the forces follow from the
 /// motion by Newton's law.
 ///
-/// ```
-/// use acrobot::physics::Pendulum;
-/// use acrobot::control::inverse_dynamics;
-/// use acrobot::{Params, Portable, State};
-///
-/// let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, State::from([0.5, -0.3, 1.0, 2.0]))?;
-/// let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(0.7);
-/// let forces = inverse_dynamics(&pendulum, [ddtheta1, ddtheta2])?;
-/// assert!(forces.torques[0].abs() < 1e-12 && (forces.torques[1] - 0.7).abs() < 1e-12);
-/// # Ok::<(), acrobot::control::ControlError>(())
-/// ```
-///
 /// # Errors
 ///
 /// [`ControlError::Invalid`] for an acceleration that is not finite, and
@@ -102,17 +90,6 @@ pub fn inverse_dynamics<A: Arithmetic>(
 
 /// The velocities of the elbow and of the tip, each \[x, y\] in m/s, x to the right and y up.
 /// [`Pendulum::positions`] has their positions.
-///
-/// ```
-/// use acrobot::physics::Pendulum;
-/// use acrobot::control::velocities;
-/// use acrobot::{Params, Portable, State};
-///
-/// let swinging = State { dtheta1: 1.0, ..State::HANGING };
-/// let [elbow, tip] = velocities(&Pendulum::<Portable>::new(Params::DEFAULT, swinging)?)?;
-/// assert_eq!((elbow, tip), ([1.0, 0.0], [2.0, 0.0]));
-/// # Ok::<(), acrobot::control::ControlError>(())
-/// ```
 ///
 /// # Errors
 ///

@@ -22,18 +22,6 @@ pub struct LinearModel<S = f64> {
 ///
 /// The state need not be an equilibrium. Bounds of the velocities do not count.
 ///
-/// ```
-/// use acrobot::physics::Pendulum;
-/// use acrobot::control::linearize;
-/// use acrobot::{Params, Portable, State};
-///
-/// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
-/// let model = linearize(&upright, 0.0)?;
-/// assert_eq!(model.a[0], [0.0, 0.0, 1.0, 0.0]); // the derivative of θ1 is θ̇1
-/// assert!(model.a[2][0] > 0.0); // gravity drives link 1 away
-/// # Ok::<(), acrobot::control::ControlError>(())
-/// ```
-///
 /// # Errors
 ///
 /// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if an

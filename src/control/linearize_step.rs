@@ -15,20 +15,6 @@ use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
 /// exponential. The state need not be an equilibrium: x′ is the deviation from the state after the
 /// step.
 ///
-/// ```
-/// use acrobot::control::linearize_step;
-/// use acrobot::physics::Pendulum;
-/// use acrobot::{Params, Portable, State};
-///
-/// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
-/// let model = linearize_step(&upright, 0.0)?;
-///
-/// let mut pushed = upright.clone();
-/// pushed.step(1e-6)?; // N m
-/// assert!((pushed.state().dtheta2 - model.b[3] * 1e-6).abs() < 1e-11);
-/// # Ok::<(), acrobot::control::ControlError>(())
-/// ```
-///
 /// # Errors
 ///
 /// Those of [`linearize`](super::linearize).

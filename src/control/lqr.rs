@@ -45,20 +45,6 @@ impl<S: Real> Lqr<S> {
 /// Steady State Gains for the Discrete Optimal Regulator*, 1971), with residuals in twice the
 /// digits of `f64`, makes it exact up to rounding.
 ///
-/// ```
-/// use acrobot::control::{LinearModel, lqr};
-///
-/// // A force moves a mass of 1 kg, whose position and velocity are the first and the third number,
-/// // in steps of 0.1 s. The others decay.
-/// let mut a = [[0.0_f64; 4]; 4];
-/// (a[0], a[1][1], a[2][2], a[3][3]) = ([1.0, 0.0, 0.1, 0.0], 0.5, 1.0, 0.5);
-/// let model = LinearModel { a, b: [0.005, 0.0, 0.1, 0.0] };
-/// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
-/// let regulator = lqr(&model, &q, 1.0)?;
-/// assert!((regulator.gain[0] - 0.9317).abs() < 1e-4 && regulator.gain[1] == 0.0);
-/// # Ok::<(), acrobot::control::ControlError>(())
-/// ```
-///
 /// # Errors
 ///
 /// [`ControlError::Invalid`] for an `r` that is not above 0, and each other [`ControlError`] except

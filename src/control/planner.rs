@@ -43,12 +43,10 @@ const HOLD: f64 = 0.25;
 const PUMP: f64 = 3.0;
 const STEADY_PUMP: f64 = 0.2;
 
-/// Plans swing-ups for one machine.
+/// Plans swing-ups for one machine: [an example](crate::guide::control#swing-up-by-a-plan).
 ///
-/// A plan is found by simulation without bounds of the velocities, and no velocity of it reaches
-/// the bounds of the parameters: a machine does not stop where a simulation clamps. Infinite ones
-/// do not restrict a plan. For a machine that clamps, there is
-/// [`for_simulation`](Self::for_simulation).
+/// No velocity of a plan reaches the bounds of the parameters, except [for a simulation that clamps
+/// there](Self::for_simulation).
 #[derive(Clone, Debug)]
 pub struct Planner<A: Arithmetic> {
     model: Pendulum<A>,

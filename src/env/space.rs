@@ -8,15 +8,6 @@ use crate::numpy::uniform;
 
 /// Gymnasium's `Box`: vectors of `f32`, each component between two finite bounds. It has no
 /// generator: `space.seed(s)` is a new `Pcg64`.
-///
-/// ```
-/// use acrobot::env::BoxSpace;
-/// use acrobot::numpy::Pcg64;
-///
-/// let space = BoxSpace::new(vec![-1.0, -12.6], vec![1.0, 12.6]).unwrap();
-/// assert!(space.contains(&space.sample(&mut Pcg64::new(42))));
-/// assert!(BoxSpace::new(vec![1.0], vec![0.0]).is_none());
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoxSpace {
     low: Vec<f32>,

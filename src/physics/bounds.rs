@@ -10,12 +10,6 @@ use crate::math::{Numbers, Real};
 /// digits differ. The error in `f32` is at most 1.2e-7 |x|. Wrapping −x negates the result, except
 /// for the sign of zero, up to 2²² turns in `f32` and 2⁵¹ in `f64`. An infinite angle or NaN gives
 /// NaN.
-///
-/// ```
-/// use acrobot::physics::wrap;
-///
-/// assert_eq!(wrap(4.0_f64), 4.0 - core::f64::consts::TAU);
-/// ```
 #[must_use]
 #[inline]
 pub fn wrap<S: Real>(x: S) -> S {

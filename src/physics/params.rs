@@ -19,19 +19,9 @@ pub enum Dynamics {
     Nips,
 }
 
-/// A coefficient of friction for each joint. Only arithmetics [with
-/// friction](crate::arithmetic::Damped) accept one that is not 0.
-///
-/// ```
-/// use acrobot::arithmetic::Damped;
-/// use acrobot::physics::{Joints, Pendulum};
-/// use acrobot::{Fast, Params, State};
-///
-/// let friction = Joints { joint1: 0.05, joint2: 0.05 }; // N m s/rad
-/// let params = Params { friction, ..Params::DEFAULT };
-/// Pendulum::<Damped<Fast>>::new(params, State::HANGING)?.step(1.0)?;
-/// # Ok::<(), acrobot::Error>(())
-/// ```
+/// A coefficient of [friction](crate::guide::equations#friction-and-rotors) for each joint. Only
+/// arithmetics with friction, such as [`Damped<Fast>`](crate::arithmetic::Damped), accept one that
+/// is not 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -46,15 +36,6 @@ pub struct Joints<V> {
 ///
 /// Link 1 hangs from the fixed joint and link 2 from the tip of link 1. The motor is between the
 /// two links. All fields are in SI units; [`validate`](Self::validate) checks their ranges.
-///
-/// ```
-/// use acrobot::Params;
-/// use acrobot::physics::Dynamics;
-///
-/// let params = Params::<f32> { dt: 0.05, dynamics: Dynamics::Nips, ..Params::DEFAULT };
-/// assert!(params.validate().is_ok());
-/// assert!(Params { mass1: 0.0, ..params }.validate().is_err());
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -177,24 +177,8 @@ impl<A: Arithmetic> Pendulum<A> {
 
     /// The derivative of the state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque, N
     /// m, by the [equations](crate::guide::equations) of [`Params::dynamics`]. A torque that is not
-    /// finite gives what IEEE 754 gives.
-    ///
-    /// Your own integrator sets each state at which it needs the derivative:
-    ///
-    /// ```
-    /// use acrobot::physics::Pendulum;
-    /// use acrobot::{Portable, State};
-    ///
-    /// let mut pendulum = Pendulum::<Portable>::hanging();
-    /// // One step of the midpoint method: 0.01 s under 1 N m.
-    /// let y: [f64; 4] = pendulum.state().into();
-    /// for h in [0.005, 0.01] {
-    ///     let rates = pendulum.derivative(1.0);
-    ///     pendulum.set_state(State::from(std::array::from_fn(|i| y[i] + h * rates[i])))?;
-    /// }
-    /// assert!(pendulum.state().dtheta2 > 0.0);
-    /// # Ok::<(), acrobot::Error>(())
-    /// ```
+    /// finite gives what IEEE 754 gives. Your own integrator [sets](Self::set_state) each state at
+    /// which it needs the derivative.
     #[must_use]
     pub fn derivative(&self, torque: A::Scalar) -> [A::Scalar; 4] {
         equations::derivative::<A, A::Scalar>(&self.model, self.y, Some(self.sin_cos()), torque)

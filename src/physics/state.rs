@@ -3,18 +3,11 @@
 use crate::error::{Error, Range};
 use crate::math::Real;
 
-/// The state of an acrobot: two angles and their velocities.
+/// The state of an acrobot: two angles and their velocities, in the order of Gymnasium's
+/// `env.unwrapped.state`.
 ///
 /// After a step the angles are within \[−π, π\] and the velocities within their bounds. Before, a
 /// state may be outside.
-///
-/// ```
-/// use acrobot::State;
-///
-/// let state = State::from([0.5, -0.25, 1.0, 0.0]); // the order of Gymnasium's env.unwrapped.state
-/// assert_eq!(state, State { theta1: 0.5, theta2: -0.25, dtheta1: 1.0, ..State::default() });
-/// assert_eq!(state.cast::<f32>().theta2, -0.25_f32);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -31,7 +24,7 @@ pub struct State<S = f64> {
 }
 
 impl<S> From<[S; 4]> for State<S> {
-    /// From \[θ1, θ2, θ̇1, θ̇2\], Gymnasium's order.
+    /// From \[θ1, θ2, θ̇1, θ̇2\].
     #[inline]
     fn from([theta1, theta2, dtheta1, dtheta2]: [S; 4]) -> Self {
         Self { theta1, theta2, dtheta1, dtheta2 }
@@ -39,7 +32,7 @@ impl<S> From<[S; 4]> for State<S> {
 }
 
 impl<S> From<State<S>> for [S; 4] {
-    /// To \[θ1, θ2, θ̇1, θ̇2\], Gymnasium's order.
+    /// To \[θ1, θ2, θ̇1, θ̇2\].
     #[inline]
     fn from(state: State<S>) -> Self {
         [state.theta1, state.theta2, state.dtheta1, state.dtheta2]

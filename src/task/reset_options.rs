@@ -6,18 +6,13 @@ use crate::numpy::SeedSequence;
 /// The arguments of Gymnasium's `reset(seed=…, options=…)`.
 ///
 /// ```
-/// use acrobot::numpy::SeedSequence;
 /// use acrobot::task::ResetBounds;
 /// use acrobot::{Acrobot, Fast, ResetOptions};
 ///
 /// let mut acrobot = Acrobot::<Fast>::new(0);
 /// // env.reset(seed=42, options={"low": -0.2, "high": 0.2})
-/// acrobot.reset_with(ResetOptions {
-///     seed: Some(SeedSequence::new(42)),
-///     bounds: Some(ResetBounds::new(-0.2, 0.2)?),
-/// });
-/// acrobot.reset_with(ResetBounds::new(-0.2, 0.2)?.into()); // the generator continues its stream
-/// acrobot.reset_with(42.into()); // as reset_with_seed(42)
+/// let bounds = ResetBounds::new(-0.2, 0.2)?;
+/// acrobot.reset_with(ResetOptions { bounds: Some(bounds), ..42.into() });
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]

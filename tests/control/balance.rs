@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::control::{self, Lqr, difference, inverse_dynamics};
+use acrobot::control::{self, ControlError, Lqr, difference, inverse_dynamics};
 use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Fast, Params, Portable, State};
 use common::{assert_says, in_every_arithmetic};
@@ -11,18 +11,18 @@ use common::{assert_says, in_every_arithmetic};
 use crate::cast;
 use crate::regulators::diagonal;
 
-/// A pendulum at rest in `target`, and its regulator, all computed in `A`. All numbers of a state
-/// have the same weight.
+/// A pendulum in `target`, and its regulator under a torque, all computed in `A`. All numbers of a
+/// state have the same weight.
 fn regulated<A: Arithmetic>(
     params: Params,
     target: State,
+    torque: f64,
     weight: f64,
-) -> (Pendulum<A>, Lqr<A::Scalar>) {
-    let params = params.cast();
-    let pendulum = Pendulum::new(params, target.cast()).unwrap();
+) -> (Pendulum<A>, Result<Lqr<A::Scalar>, ControlError>) {
+    let pendulum = Pendulum::new(params.cast(), target.cast()).unwrap();
     let q = diagonal([weight; 4]).map(cast);
-    let regulator = control::regulator(&pendulum, A::Scalar::ZERO, &q, Real::from_f64(1.0));
-    (pendulum, regulator.unwrap())
+    let regulator = control::regulator(&pendulum, Real::from_f64(torque), &q, Real::from_f64(1.0));
+    (pendulum, regulator)
 }
 
 /// The default parameters with this `dt`.
@@ -32,7 +32,8 @@ fn every(dt: f64) -> Params {
 
 /// How far link 1 may lean, mrad, at 100 Hz, so that a motor of `limit` brings it back from rest.
 fn largest_lean(params: Params, limit: f64, weight: f64) -> usize {
-    let (pendulum, regulator) = regulated::<Portable>(params, State::UPRIGHT, weight);
+    let (pendulum, regulator) = regulated::<Portable>(params, State::UPRIGHT, 0.0, weight);
+    let regulator = regulator.unwrap();
     let holds = |&lean: &u32| {
         let mut pendulum = pendulum.clone();
         let mut state = State::UPRIGHT;
@@ -63,7 +64,8 @@ fn a_weak_motor_holds_as_little_as_the_docs_say() {
 /// The largest deviation of an angle in the tenth second, mrad, of a regulator that begins at 10
 /// mrad.
 fn deviation_held<A: Arithmetic>(params: Params, target: State) -> f64 {
-    let (mut pendulum, regulator) = regulated::<A>(params, target, 1.0);
+    let (mut pendulum, regulator) = regulated::<A>(params, target, 0.0, 1.0);
+    let regulator = regulator.unwrap();
     let target = target.cast();
     let mut state = target;
     state.theta1 = state.theta1 - Real::from_f64(0.01);
@@ -97,12 +99,8 @@ fn single_precision_loses_upright_what_the_docs_say() {
 #[test]
 fn a_regulator_needs_an_equilibrium() {
     fn check<A: Arithmetic>() {
-        let q = diagonal([1.0; 4]).map(cast);
-        let regulate = |state: State, torque| {
-            let params = Params::<f64>::DEFAULT.cast();
-            let pendulum = Pendulum::<A>::new(params, state.cast()).unwrap();
-            let regulator =
-                control::regulator(&pendulum, Real::from_f64(torque), &q, Real::from_f64(1.0));
+        let regulate = |state, torque| {
+            let (_, regulator) = regulated::<A>(Params::DEFAULT, state, torque, 1.0);
             regulator.map(drop).map_err(|error| error.to_string())
         };
         // Link 2 is horizontal, and link 1 leans to the other side.

@@ -57,40 +57,48 @@ impl Machine {
     }
 }
 
-/// Random torques of up to 3 N m, each for a quarter of a second.
-fn shake(rng: &mut Pcg64, tick: usize, torque: &mut f64) {
-    if tick.is_multiple_of(125) {
-        *torque = uniform(rng, -3.0, 3.0);
+/// Follows a machine for ten seconds, under random torques of up to 3 N m, each for a quarter of a
+/// second. Calls `check` after each measurement.
+fn follow<A: Arithmetic, const K: usize>(
+    estimator: &mut Estimator<A, K>,
+    mut machine: Machine,
+    rng: &mut Pcg64,
+    mut check: impl FnMut(u32, &Estimator<A, K>, State),
+) {
+    let mut torque = 0.0;
+    for tick in 0..5000_u32 {
+        if tick.is_multiple_of(125) {
+            torque = uniform(rng, -3.0, 3.0);
+        }
+        estimator.measure(machine.angles().map(A::Scalar::from_f64)).unwrap();
+        check(tick, estimator, machine.pendulum.state());
+        estimator.step(A::Scalar::from_f64(torque)).unwrap();
+        machine.step(torque);
     }
 }
 
 /// The root of the mean square of the errors of both velocities, rad/s, and the part of the errors
 /// that are within two standard deviations.
-fn follow<A: Arithmetic>() -> (f64, f64) {
+fn errors<A: Arithmetic>() -> (f64, f64) {
     let mut estimator = Estimator::<A>::new(real().cast(), noise()).unwrap();
-    let (mut machine, mut rng) = (Machine::new(real(), 1), Pcg64::new(2));
-    let (mut torque, mut squares, mut within, mut count) = (0.0, 0.0, 0.0, 0.0);
-    for tick in 0..5000 {
-        shake(&mut rng, tick, &mut torque);
-        estimator.measure(machine.angles().map(A::Scalar::from_f64)).unwrap();
+    let (mut squares, mut within, mut count) = (0.0, 0.0, 0.0);
+    let machine = Machine::new(real(), 1);
+    follow(&mut estimator, machine, &mut Pcg64::new(2), |tick, estimator, truth| {
         if tick > 100 {
-            let found = estimator.state().cast::<f64>();
-            let errors = difference(found, machine.pendulum.state());
+            let errors = difference(estimator.state().cast::<f64>(), truth);
             for (error, deviation) in errors.iter().zip(estimator.deviations().unwrap()).skip(2) {
                 squares += error * error;
                 within += f64::from(u8::from(error.abs() < 2.0 * deviation.to_f64()));
                 count += 1.0;
             }
         }
-        estimator.step(A::Scalar::from_f64(torque)).unwrap();
-        machine.step(torque);
-    }
+    });
     (f64::sqrt(squares / count), within / count)
 }
 
 #[test]
 fn velocities_follow_from_angles() {
-    for (error, within) in [follow::<Damped<Portable>>(), follow::<Damped<Fast>>()] {
+    for (error, within) in [errors::<Damped<Portable>>(), errors::<Damped<Fast>>()] {
         assert!(error < 0.05 && within > 0.9, "{error} rad/s, {within}");
     }
 }
@@ -117,8 +125,8 @@ fn a_push_is_noticed_within_a_fiftieth_of_a_second() {
     }
 }
 
-/// The inertias, and both moments of gravity.
-fn base(params: &Params) -> [f64; 5] {
+/// The inertias of the whole arm, of link 2 and what couples them, and both moments of gravity.
+pub fn base(params: &Params) -> [f64; 5] {
     let Params { mass1, mass2, length1, center_of_mass1: lc1, center_of_mass2: lc2, .. } = *params;
     let upper = params.inertia1 + mass1 * lc1 * lc1 + mass2 * length1 * length1;
     let link2 = params.inertia2 + mass2 * lc2 * lc2;
@@ -157,13 +165,7 @@ fn ten_seconds_of_motion_tell_the_parameters() {
             let (given, deviations) = (given.cast(), deviations.cast());
             let mut estimator =
                 Estimator::<A, 10>::with_params(given, deviations, noise()).unwrap();
-            let (mut machine, mut torque) = (Machine::new(truth, seed), 0.0);
-            for tick in 0..5000 {
-                shake(&mut rng, tick, &mut torque);
-                estimator.measure(machine.angles().map(A::Scalar::from_f64)).unwrap();
-                estimator.step(A::Scalar::from_f64(torque)).unwrap();
-                machine.step(torque);
-            }
+            follow(&mut estimator, Machine::new(truth, seed), &mut rng, |_, _, _| {});
             let found = estimator.params().cast::<f64>();
             for (found, truth) in base(&found).into_iter().zip(base(&truth)) {
                 worst = worst.max((found / truth - 1.0).abs());

@@ -9,7 +9,7 @@ use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Joints;
 use acrobot::{Params, Portable};
 
-use crate::estimator::{Machine, real};
+use crate::estimator::{Machine, base, real};
 
 /// RealAIGym's machine with other masses, inertias and friction.
 fn machine(rng: &mut Pcg64) -> Params {
@@ -46,11 +46,9 @@ fn record(params: Params, rng: &mut Pcg64, seed: u64) -> Vec<Sample> {
     samples
 }
 
-/// The inertias: those of the whole arm, of link 2, and what couples them.
+/// The elements of the mass matrix where θ2 is ±π/2.
 fn inertias(params: &Params) -> [f64; 3] {
-    let Params { mass1, mass2, length1, center_of_mass1: lc1, center_of_mass2: lc2, .. } = *params;
-    let upper = params.inertia1 + mass1 * lc1 * lc1 + mass2 * length1 * length1;
-    let link2 = params.inertia2 + mass2 * lc2 * lc2;
+    let [upper, link2, ..] = base(params);
     [upper + link2 - 2.0 * params.rotor, link2 - params.rotor, link2]
 }
 

@@ -6,10 +6,12 @@ use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Joints, Pendulum, saturate};
 use acrobot::{Fast, Params, Portable, State};
 
+use crate::cast;
+
 const REST: f64 = 20.0; // s after a plan
 
-/// Whether the machine that follows a plan is upright in the last second.
-fn holds<A: Arithmetic>(
+/// Whether the machine that follows a plan is upright in the last second, within 0.01 rad.
+pub fn holds<A: Arithmetic>(
     planner: &Planner<A>,
     mut machine: Pendulum<A>,
     plan: &[Knot<A::Scalar>],
@@ -21,27 +23,23 @@ fn holds<A: Arithmetic>(
     for i in 0..steps {
         machine.step(saturate(planner.follow(plan, i, machine.state()), limit)).unwrap();
         let [x1, x2, ..] = difference(machine.state(), State::UPRIGHT).map(Real::to_f64);
-        if x1.abs().max(x2.abs()) > 0.1 {
+        if x1.abs().max(x2.abs()) > 0.01 {
             upright = i + 1;
         }
     }
     upright + rate as usize <= steps
 }
 
-fn scalars<S: Real, const N: usize>(numbers: [f64; N]) -> [S; N] {
-    numbers.map(S::from_f64)
-}
-
 /// How many states near the border of what the motor can hold are accepted, how many of these fall,
 /// and how many others would be held.
 fn count<A: Arithmetic>(params: Params<f64>, limit: f64, rng: &mut Pcg64) -> [u32; 3] {
-    let (params, [limit]) = (params.cast(), scalars([limit]));
+    let (params, [limit]) = (params.cast(), cast([limit]));
     let planner = Planner::<A>::new(params, limit).unwrap();
     let [mut accepted, mut fallen, mut missed] = [0; 3];
     for _ in 0..850 {
         let size = uniform(rng, -6.0, 0.0).exp();
         let [x1, x2, x3, x4] = [0.7, 1.4, 2.0, 4.0].map(|most| size * uniform(rng, -most, most));
-        let state = State::from(scalars([core::f64::consts::PI + x1, x2, x3, x4]));
+        let state = State::from(cast([core::f64::consts::PI + x1, x2, x3, x4]));
         let held = || holds(&planner, Pendulum::new(params, state).unwrap(), &[], limit);
         match planner.catches(state) {
             true => {
@@ -100,8 +98,8 @@ fn plans<A: Arithmetic>(machines: u64) -> [u32; 2] {
     for seed in 0..machines {
         let rng = &mut Pcg64::new(seed);
         let (params, limit) = machine(rng);
-        let (params, [limit]) = (params.cast(), scalars([limit]));
-        let [theta1, theta2] = scalars([0; 2].map(|_| uniform(rng, -3.1, 3.1)));
+        let (params, [limit]) = (params.cast(), cast([limit]));
+        let [theta1, theta2] = cast([0; 2].map(|_| uniform(rng, -3.1, 3.1)));
         let start = State { theta1, theta2, ..State::HANGING };
         let mut planner = Planner::<A>::new(params, limit).unwrap();
         if let Ok(plan) = planner.plan(start, 10, rng, &mut [Knot::EMPTY; 400]) {

@@ -11,7 +11,7 @@ use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Dynamics;
 use acrobot::task::{Draw, Draws, Gymnasium};
-use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -95,14 +95,6 @@ fn load<T: Snapshot>(bytes: &[u8]) {
     }
 }
 
-/// Angles and velocities are within their bounds, so none is NaN.
-fn assert_settled<S: Real>(state: State<S>, params: &Params<S>) {
-    let limits = [S::PI, S::PI, params.max_velocity1, params.max_velocity2];
-    for (x, limit) in <[S; 4]>::from(state).into_iter().zip(limits) {
-        assert!(-limit <= x && x <= limit, "{state:?}");
-    }
-}
-
 impl<A: Arithmetic> Snapshot for Acrobot<A> {
     fn sample() -> Self {
         let mut acrobot = Acrobot::new(42);
@@ -113,16 +105,13 @@ impl<A: Arithmetic> Snapshot for Acrobot<A> {
         acrobot
     }
 
+    /// `tests/properties` proves the rest: steps of any valid acrobot keep their promises.
     fn check(mut self) -> bool {
         assert!(self == self.clone());
         assert!(self.params().validate().is_ok() && self.state().validate().is_ok());
         for action in Action::ALL {
-            let step = self.step(action);
-            assert_settled(self.state(), self.params());
-            let [sines @ .., dtheta1, dtheta2] = step.observation;
-            assert!(sines.iter().all(|x| x.abs() <= 1.0), "{step:?}");
-            assert!(!dtheta1.is_nan() && !dtheta2.is_nan(), "{step:?}");
-            assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
+            self.step(action);
+            assert!(self.state().validate().is_ok());
         }
         self.reset();
         assert!(self.state().validate().is_ok());

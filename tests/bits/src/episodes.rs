@@ -1,11 +1,11 @@
 //! Fixed episodes and batches, and a digest of every bit of each.
 
-use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Joints;
-use acrobot::task::{Balance, Draw, Draws, Gymnasium, Swingup, Task};
-use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
+use acrobot::task::{Draw, Draws, Gymnasium, Task};
+use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
 
 use crate::{Digest, against};
 
@@ -63,45 +63,22 @@ fn subnormal_torques<A: Arithmetic>(params: &mut Params<A::Scalar>) {
     params.torques = [-torque, A::Scalar::ZERO, torque];
 }
 
-/// Every bit of 200 steps with subnormal numbers, which some FPUs flush to zero, in each
-/// arithmetic.
-pub fn subnormal() -> [u64; 4] {
-    [
-        subnormal_in::<Reference>(),
-        subnormal_in::<Portable>(),
-        subnormal_in::<Fast>(),
-        subnormal_in::<Micro>(),
-    ]
-}
-
-fn subnormal_in<A: Arithmetic>() -> u64 {
+/// Every bit of 200 steps with subnormal numbers, which some FPUs flush to zero.
+pub fn subnormal<A: Arithmetic>() -> u64 {
     steps(Acrobot::<A>::hanging(Pcg64::new(0)), subnormal_torques::<A>)
 }
 
-/// Every bit of 200 steps with friction, in both forms of the equations.
-pub fn damped() -> [u64; 2] {
-    [damped_in::<Damped<Reference>>(), damped_in::<Damped<Fast>>()]
-}
-
-fn damped_in<A: Arithmetic>() -> u64 {
+/// Every bit of 200 steps with friction.
+pub fn damped<A: Arithmetic>() -> u64 {
     let [joint1, joint2] = [0.1, 0.05].map(A::Scalar::from_f64);
     steps(Acrobot::<A>::new(0), |params| {
         params.friction = Joints { joint1, joint2 };
     })
 }
 
-/// Every bit of 200 steps of the swing-up, with their rewards, from a state near the target and
-/// from one far away.
-pub fn swingup() -> [u64; 2] {
-    [task_in::<Damped<Reference>, Swingup>(), task_in::<Damped<Fast>, Swingup>()]
-}
-
-/// As [`swingup`], of the task to stay upright.
-pub fn balance() -> [u64; 2] {
-    [task_in::<Reference, Balance>(), task_in::<Fast, Balance>()]
-}
-
-fn task_in<A: Arithmetic, T: Task>() -> u64 {
+/// Every bit of 200 steps of a task, with their rewards, from a state near upright and from one far
+/// away.
+pub fn task<A: Arithmetic, T: Task>() -> u64 {
     let mut digest = Digest::default();
     for start in [[3.0, 0.2, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0]] {
         let mut acrobot = Acrobot::<A, T>::new(0);

@@ -11,8 +11,36 @@ pub mod oled;
 pub mod plan;
 pub mod training;
 
-use acrobot::Action;
-use acrobot::arithmetic::Real;
+use acrobot::arithmetic::{Damped, Micro, Real, Reference};
+use acrobot::task::{Balance, Swingup};
+use acrobot::{Action, Fast, Portable};
+
+use episodes::*;
+
+/// Calls `report` with the name, the digests and the recorded digests of each.
+pub fn compare(mut report: impl FnMut(&str, &[u64], &[u64])) {
+    report("Reference", &[sixteen::<Reference>()], &[REFERENCE]);
+    report("Portable", &[sixteen::<Portable>()], &[PORTABLE]);
+    report("Fast", &[sixteen::<Fast>()], &[FAST]);
+    report("Micro", &[sixteen::<Micro>()], &[MICRO]);
+    let [reference, portable] = [subnormal::<Reference>(), subnormal::<Portable>()];
+    let found = [reference, portable, subnormal::<Fast>(), subnormal::<Micro>()];
+    report("subnormal numbers", &found, &SUBNORMAL);
+    report("friction", &[damped::<Damped<Reference>>(), damped::<Damped<Fast>>()], &DAMPED);
+    let found = [task::<Damped<Reference>, Swingup>(), task::<Damped<Fast>, Swingup>()];
+    report("swing-up", &found, &SWINGUP);
+    report("balance", &[task::<Reference, Balance>(), task::<Fast, Balance>()], &BALANCE);
+    report("batches of 1 lane", &batches::<1, 20, 8>(), &BATCHES);
+    report("batches of 4 lanes", &batches::<4, 5, 2>(), &BATCHES);
+    // More of them do not fit into 256 KiB of flash.
+    report("batch of 8 lanes", &[shared_params::<8, 3>()], &BATCHES[..1]);
+    // The learner and the plan do not fit into 16 KiB of RAM. The firmware `learn` and `balance`
+    // compare them.
+    if !cfg!(target_os = "none") {
+        report("training", &[training::weights()], &[training::WEIGHTS]);
+        report("plan", &[plan::planned()], &[plan::PLAN]);
+    }
+}
 
 /// The policy of these episodes: torque against θ̇1, in rad/s. It reaches the goal.
 pub fn against<S: Real>(dtheta1: S) -> Action {

@@ -167,30 +167,16 @@ pub fn take_recorded_steps<A: Arithmetic>(
     let (singles, rest) = singles.as_chunks::<23>();
     assert!(rest.is_empty() && singles.len() == 2600);
     for (number, single) in singles.iter().enumerate() {
-        let [length1, length2, mass1, mass2, rest @ ..] = *single;
-        let [center_of_mass1, center_of_mass2, inertia1, dt, rest @ ..] = rest;
-        let [max_velocity1, max_velocity2, rest @ ..] = rest;
-        let [torque0, torque1, torque2, dynamics, rest @ ..] = rest;
-        let [theta1, theta2, dtheta1, dtheta2, action, next @ ..] = rest;
-        let params = Params {
-            length1,
-            length2,
-            mass1,
-            mass2,
-            center_of_mass1,
-            center_of_mass2,
-            inertia1,
-            inertia2: inertia1,
-            dt,
-            max_velocity1,
-            max_velocity2,
-            torques: [torque0, torque1, torque2],
-            dynamics: [Dynamics::Book, Dynamics::Nips][dynamics as usize],
-            ..Params::DEFAULT
-        };
+        let [given @ .., dynamics, x1, x2, x3, x4, action, y1, y2, y3, y4] = *single;
+        let dynamics = [Dynamics::Book, Dynamics::Nips][dynamics as usize];
+        let mut params = Params { dynamics, ..Params::DEFAULT };
+        let [links @ .., _, _, dt, v1, v2, t1, t2, t3, _, _, _, _, _, _] = params.numbers_mut();
+        let places = links.into_iter().chain([dt, v1, v2, t1, t2, t3]);
+        places.zip(given).for_each(|(place, x)| *place = x);
+        params.inertia2 = params.inertia1;
         let mut acrobot = Acrobot::with_params(0, params.cast()).unwrap();
-        let state = State { theta1, theta2, dtheta1, dtheta2 };
+        let [state, next] = [[x1, x2, x3, x4], [y1, y2, y3, y4]].map(State::from);
         let action = Action::try_from(action as u8).unwrap();
-        take(format!("single step {number}"), &mut acrobot, state, action, next.into());
+        take(format!("single step {number}"), &mut acrobot, state, action, next);
     }
 }
