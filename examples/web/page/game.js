@@ -17,7 +17,6 @@ export const noisy = (level, { noise, torque }) =>
 export const newAcrobot = () => new Acrobot({ task: "balance" });
 /** This reward is at Gymnasium's line. */
 const GOAL = 0.75;
-const gymnasium = new Acrobot();
 
 /** The units of a push in a rad/s. */
 export const UNITS = 4096;
@@ -34,6 +33,7 @@ export function levelOf(torque, limit) {
 }
 
 export class Game {
+  #gymnasium = new Acrobot();
   acrobot = newAcrobot();
   #shown = newAcrobot();
   seed;
@@ -58,9 +58,9 @@ export class Game {
   /** Begins an episode, or throws if the package rejects the parameters. */
   begin(seed, params = this.params, start = null) {
     this.#set(params);
-    gymnasium.reset(seed);
+    this.#gymnasium.reset(seed);
     this.acrobot.reset(seed);
-    this.acrobot.state = start ?? gymnasium.state;
+    this.acrobot.state = start ?? this.#gymnasium.state;
     Object.assign(this, { seed, start, levels: [], pushes: [], steps: 0, end: null });
     this.#rows = [this.#row(0)];
   }

@@ -1,31 +1,32 @@
 // Connects the page to an episode and to the panels.
 
 import { Learner, bangBang, energyLaw } from "./acrobot-rs/policies.js";
-import { number, showCharts } from "./charts.js";
+import { animationOf } from "./animation.js";
+import { CHARTS, number } from "./charts.js";
 import { connectControls } from "./controls.js";
-import { FULL, Game, UNITS } from "./game.js";
+import { download } from "./files.js";
+import { FULL, Game, UNITS, noisy } from "./game.js";
 import { actionsOf, decodeRun, encodeRun } from "./link.js";
 import { attempt, parametersPanel } from "./parameters.js";
 import { PlannerPolicy, isUpright } from "./planner.js";
 import { minus } from "./plot.js";
 import { placesOf, pull } from "./push.js";
-import { BALANCE, DEFAULTS, LIMIT, parseSeed } from "./settings.js";
-import { drawStage, placeAt } from "./stage.js";
+import { BALANCE, DEFAULTS, LIMIT, isSame, parseSeed } from "./settings.js";
+import { drawRival, drawStage, placeAt } from "./stage.js";
 import { trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
 
 /** How long a policy's ended episode stays on the screen before the next begins, ms. */
 const INTERVAL = 1500;
-/** The least time between two updates of numbers and plots while it plays, ms. */
-const PERIOD = 80;
-
-const isSame = (params, others) =>
-  Object.entries(others).every(([name, value]) => Object.is(params[name], value));
+/** The least time between two updates of the numbers and of one plot while it plays, ms. */
+const PERIOD = 30;
 
 function start() {
   const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
   const planner = new PlannerPolicy();
+  /** The acrobot to compare with. */
+  const rival = { game: new Game(42n, { ...DEFAULTS }), planner: new PlannerPolicy() };
   let learnt = learner;
   const POLICIES = {
     bang_bang: bangBang,
@@ -36,8 +37,7 @@ function start() {
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const isTouch = matchMedia("(hover: none)").matches;
   const takeOver = `To take over, press ${isTouch ? "◀ or ▶" : "← or →"}.`;
-  $("app").hidden = false;
-  $("notice").hidden = true;
+  $("first").remove();
 
   let playing = !calm.matches;
   /** How much of the last step has been shown, s; dt before the first step. */
@@ -55,11 +55,13 @@ function start() {
 
   // ---- the episode
 
-  const level = () => {
-    const policy = $("policy").value;
-    if (policy === "keys") return FULL * (Number(held.right) - Number(held.left));
-    if (policy === "planner") return planner.act(game, grip !== null);
-    return FULL * (POLICIES[policy](game.acrobot) - 1);
+  const level = (policy, game, planner) => {
+    const isPulled = grip !== null;
+    const decided = {
+      keys: () => FULL * (Number(held.right) - Number(held.left)),
+      planner: () => planner.act(game, isPulled),
+    }[policy] ?? (() => FULL * (POLICIES[policy](game.acrobot) - 1));
+    return noisy(decided(), game.params);
   };
 
   /** Where the grip pulls to, m. */
@@ -78,13 +80,16 @@ function start() {
   const step = () => {
     try {
       const index = game.steps;
-      const replays = $("policy").value === "link";
+      const policy = $("policy").value;
+      const replays = policy === "link";
       if (replays && index === recorded.levels.length) {
         if (recorded.policy === "planner") return choose("planner");
         return pause("The replay has ended. Press Restart, or an arrow and Play.");
       }
-      if (replays) game.step(recorded.levels[index], recorded.pushes[index]);
-      else game.step(level(), push());
+      const pushed = replays ? recorded.pushes[index] : push();
+      game.step(replays ? recorded.levels[index] : level(policy, game, planner), pushed);
+      const other = $("rival").value;
+      if (other !== "") rival.game.step(level(other, rival.game, rival.planner), pushed);
     } catch (error) {
       return pause(minus(error.message)); // With extreme physics an energy is infinite.
     }
@@ -103,6 +108,8 @@ function start() {
   const begin = (seed, params = game.params, run = replayed()) => {
     game.begin(seed, params, run?.start);
     game.free = $("policy").value === "planner" || (run !== null && actionsOf(run) === null);
+    rival.game.begin(seed, params, run?.start);
+    rival.game.free = $("rival").value === "planner";
     upright = before = 0;
     shown = params.dt;
     nextAt = Infinity;
@@ -124,7 +131,7 @@ function start() {
   /** Changes the parameters at once, except where another episode must begin. */
   const setPhysics = (params) => {
     if (game.steps === 0 || game.end !== null || replayed()) return begin(game.seed, params);
-    game.change(params);
+    for (const each of [game, rival.game]) each.change(params);
     shown = params.dt;
     address();
     changed();
@@ -197,24 +204,35 @@ function start() {
   /** Requests an update of everything except the picture, which each frame draws. */
   const changed = () => (dirty = true);
 
-  let updated = 0;
+  /** The same text again would need another layout. */
+  const write = (id, text) => $(id).textContent !== text && ($(id).textContent = text);
+
+  let [updated, turn] = [0, 0];
   const update = (now) => {
     [dirty, updated] = [false, now];
-    $("step").textContent = game.steps;
-    $("return").textContent = game.free ? `${upright.toFixed(1)} s` : minus(String(game.return));
-    $("steps-label").textContent = game.free ? "Steps" : "Steps (at most 500)";
-    $("return-label").textContent = game.free ? "Upright for" : "Return";
-    $("pause").textContent = playing ? "Pause" : "Play";
-    const verdicts = { goal: `Goal! ${game.steps} steps`, limit: "Out of time" };
-    $("verdict").textContent = verdicts[game.end] ?? "";
+    const charts = playing ? [CHARTS[turn++ % CHARTS.length]] : CHARTS;
+    charts.forEach((show) => show(game));
+    const verdict = (game) => ({ goal: `Goal! ${game.steps} steps`, limit: "Out of time" })[game.end];
+    const other = rival.game;
+    const texts = {
+      "step": String(game.steps),
+      "return": game.free ? `${upright.toFixed(1)} s` : minus(String(game.return)),
+      "steps-label": game.free ? "Steps" : "Steps (at most 500)",
+      "return-label": game.free ? "Upright for" : "Return",
+      "pause": playing ? "Pause" : "Play",
+      "verdict": verdict(game) ?? "",
+      "rival-label": $("rival").selectedOptions[0].textContent,
+      "rival-steps": isUpright(other.numbers) ? "upright" : verdict(other) ?? `${other.steps}`,
+    };
+    for (const [id, text] of Object.entries(texts)) write(id, text);
+    $("rival-score").hidden = $("rival").value === "";
     const bits = new Uint32Array(game.numbers.buffer);
     const rows = ["θ1", "θ2", "θ1′", "θ2′"].map((name, i) => {
       const value = `${number(game.numbers[i], 4)} ${i < 2 ? "rad" : "rad/s"}`;
       const code = `<code>${bits[i].toString(16).padStart(8, "0")}</code>`;
       return `<tr><th scope="row">${name}</th><td>${value}</td><td>${code}</td></tr>`;
     });
-    $("state").innerHTML = rows.join("");
-    showCharts(game);
+    if (!playing || $("bits").open) $("state").innerHTML = rows.join("");
   };
 
   let last = performance.now();
@@ -242,13 +260,15 @@ function start() {
       $("link-field").hidden = hidden;
     }
     const plans = $("policy").value === "planner";
-    $("thought").textContent = plans ? (planner.thinks ? "Planning…" : planner.message) : "";
-    $("thought").classList.toggle("thinks", plans && planner.thinks);
     const pulled = grip && { point: grip.point, target: target() };
     const part = calm.matches ? 1 : Math.min(shown / dt, 1);
     drawStage(game, part, plans ? planner.path : [], pulled);
-    // Plots take longer than all else.
+    drawRival($("rival").value === "" ? null : rival.game, part);
+    // Plots take longer than all else, so each frame draws one at most. Texts come last, because
+    // the size of a canvas is only known after the layout.
     if (dirty && (!playing || now - updated >= PERIOD)) update(now);
+    write("thought", plans ? (planner.thinks ? "Planning…" : planner.message) : "");
+    $("thought").classList.toggle("thinks", plans && planner.thinks);
   };
 
   // ---- keys and buttons
@@ -280,6 +300,11 @@ function start() {
     if (playing) say(player());
   };
   $("policy").onchange = ({ target }) => select(target.value);
+  $("rival").onchange = ({ target: { value } }) => {
+    begin(game.seed);
+    const name = $("rival").selectedOptions[0].textContent;
+    if (value !== "") say(`${name} plays behind it, from the same seed, with the same pulls.`);
+  };
   $("balance").onclick = () => {
     select("planner");
     if (!playing) play();
@@ -341,13 +366,18 @@ function start() {
     }
   };
 
+  $("animate").onclick = () =>
+    download("acrobot.svg", [animationOf(game)], { type: "image/svg+xml" });
+
   const training = trainingPanel(learner, {
     ready(policy) {
       learnt = policy;
-      const option = document.querySelector("[value=learnt]");
-      option.disabled = false;
-      option.textContent = "Learnt";
+      for (const option of document.querySelectorAll("[value=learnt]")) {
+        option.disabled = false;
+        option.textContent = "Learnt";
+      }
     },
+    params: () => game.params,
     drive() {
       choose("learnt");
       begin(game.seed);
@@ -374,8 +404,6 @@ function start() {
 try {
   start();
 } catch (error) {
-  $("app").hidden = true;
-  $("notice").hidden = false;
-  $("notice").role = "alert";
-  $("notice").textContent = `The page could not start: ${error.message}.`;
+  $("status").role = "alert";
+  $("status").textContent = `The page could not start: ${error.message}.`;
 }

@@ -2,7 +2,7 @@
 // field shows why a value is rejected.
 
 import { minus } from "./plot.js";
-import { BALANCE, DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
+import { FIRST, MACHINES, PARAMETERS, isSame, parseNumber, textOf } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -20,7 +20,7 @@ export function attempt(field, reason, set) {
 
 /** `get` returns the parameters, `set` takes them or throws. Returns a function that shows them. */
 export function parametersPanel(get, set) {
-  const fields = PARAMETERS.map(({ name, label, unit, start, end, step, hint }) => {
+  const fields = PARAMETERS.map(({ name, label, unit, start, end, step, hint }, i) => {
     const field = document.createElement("div");
     field.className = "field parameter";
     const described = `aria-describedby="${name}-hint ${name}-reason"`;
@@ -32,7 +32,7 @@ export function parametersPanel(get, set) {
       <span class="hint">${unit}</span>
       <p id="${name}-reason" class="reason" role="alert"></p>
       <p id="${name}-hint" class="hint">${hint}</p>`;
-    $("params").append(field);
+    $(i < FIRST ? "params" : "others").append(field);
     const [slider, text] = field.querySelectorAll("input");
     const reason = field.querySelector(".reason");
     const change = () => {
@@ -56,15 +56,16 @@ export function parametersPanel(get, set) {
     };
   });
   const show = () => {
+    const machine = Object.keys(MACHINES).find((name) => isSame(get(), MACHINES[name]));
+    $("machine").value = machine ?? "";
     $("dynamics").value = get().dynamics;
     fields.forEach((show) => show());
   };
   $("dynamics").onchange = ({ target }) => set({ ...get(), dynamics: target.value });
-  for (const [id, preset] of [["defaults", DEFAULTS], ["strong", BALANCE]]) {
-    $(id).onclick = () => {
-      set({ ...preset });
-      show();
-    };
-  }
+  $("machine").append(...Object.keys(MACHINES).map((name) => new Option(name)));
+  $("machine").onchange = ({ target }) => {
+    set({ ...MACHINES[target.value] });
+    show();
+  };
   return show;
 }

@@ -30,10 +30,12 @@ export function plot(canvas, options) {
   const { series, range, start = 0, end, unit, marks = [], period = Infinity } = options;
   const { clientWidth: width, clientHeight: height } = canvas;
   const scale = devicePixelRatio;
-  canvas.width = Math.round(width * scale);
-  canvas.height = Math.round(height * scale);
+  const size = [width, height].map((side) => Math.round(side * scale));
+  if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
   const context = canvas.getContext("2d");
-  context.scale(scale, scale);
+  context.save();
+  context.setTransform(scale, 0, 0, scale, 0, 0);
+  context.clearRect(0, 0, width, height);
 
   const [low, high] = range;
   const { left, top } = MARGIN;
@@ -84,6 +86,7 @@ export function plot(canvas, options) {
     });
     line(points, color);
   }
+  context.restore();
 }
 
 /**

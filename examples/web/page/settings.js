@@ -52,6 +52,9 @@ export const MACHINES = {
   },
 };
 
+export const isSame = (params, others) =>
+  Object.entries(others).every(([name, value]) => Object.is(params[name], value));
+
 /** The seed in a text. Throws an `Error` with the reason if the text is not a seed. */
 export function parseSeed(text) {
   const digits = text.trim();

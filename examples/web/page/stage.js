@@ -1,15 +1,49 @@
 // Draws the acrobot in the page's colours, the path of the tip to come, and the spring.
 
-import { FULL } from "./game.js";
+import { FULL, newAcrobot } from "./game.js";
 import { placeOf, placesOf } from "./push.js";
 import { color } from "./plot.js";
 
-const picture = document.querySelector("#picture");
+const [picture, behind] = ["#picture", "#behind"].map((id) => document.querySelector(id));
+
+/** The picture's side in lengths of both links. */
+const PART = 2.2;
+let model = null;
+
+/** A canvas's context, at the display's resolution. */
+function contextOf(canvas) {
+  const side = Math.max(Math.round(canvas.clientWidth * devicePixelRatio), 1);
+  if (canvas.width !== side) canvas.width = canvas.height = side;
+  return canvas.getContext("2d");
+}
+
+/** Draws a game, or nothing, behind the picture. */
+export function drawRival(game, part) {
+  behind.hidden = game === null;
+  if (game === null) return;
+  const colors = { background: "transparent", target: "transparent", torque: "transparent" };
+  const shown = { ...colors, link: color("--muted"), joint: color("--text") };
+  draw(contextOf(behind), shown, game, part);
+}
+
+/** Draws a game's acrobot as if its links had 2 m, and returns its state. */
+function draw(context, colors, game, part) {
+  const { length1, length2 } = game.params;
+  const { state } = game.between(part);
+  const scale = 2 / (length1 + length2);
+  model ??= newAcrobot();
+  model.setParams({ length1: scale * length1, length2: scale * length2 });
+  // The arrow is that of the last step.
+  model.stepTorque(game.numbers[6]);
+  model.state = state;
+  model.draw(context, { colors });
+  return state;
+}
 
 /** The place in metres, y up, of a place in the picture in CSS pixels. */
 export function placeAt(x, y, { length1, length2 }) {
   const side = picture.clientWidth;
-  const metre = side / 2 / (length1 + length2 + 0.2);
+  const metre = side / PART / (length1 + length2);
   return [(x - side / 2) / metre, (side / 2 - y) / metre];
 }
 
@@ -18,20 +52,18 @@ export function placeAt(x, y, { length1, length2 }) {
  * what pulls: a `point` of a link and a `target`, or null.
  */
 export function drawStage(game, part, path, pulled) {
-  const side = Math.max(Math.round(picture.clientWidth * devicePixelRatio), 1);
-  if (picture.width !== side) picture.width = picture.height = side;
   const names = ["--text", "--link", "--joint", "--torque", "--accent", "--second"];
   const [target, link, joint, torque, accent, second] = names.map(color);
   // The arrow fades with the torque.
   const share = Math.round((255 * Math.abs(game.levels.at(-1) ?? 0)) / FULL);
   const faded = `${torque}${share.toString(16).padStart(2, "0")}`;
-  const context = picture.getContext("2d");
+  const context = contextOf(picture);
+  const { width: side } = picture;
   const colors = { background: "transparent", target, link, joint, torque: faded };
-  const acrobot = game.between(part);
-  acrobot.draw(context, { colors });
+  const state = draw(context, colors, game, part);
 
   const { length1, length2 } = game.params;
-  const metre = side / 2 / (length1 + length2 + 0.2);
+  const metre = side / PART / (length1 + length2);
   context.save();
   const at = ([x, y]) => [side / 2 + x * metre, side / 2 - y * metre];
   const line = (points, style, dashes) => {
@@ -42,7 +74,6 @@ export function drawStage(game, part, path, pulled) {
     for (const point of points) context.lineTo(...at(point));
     context.stroke();
   };
-  const { state } = acrobot;
   if (path.length > 0) line([placesOf(state, game.params)[1], ...path], accent, [1, 2]);
   if (pulled !== null) {
     const from = placeOf(pulled.point, state, game.params);

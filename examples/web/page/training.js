@@ -1,6 +1,8 @@
 // The panel "Train a policy": a worker, the learning curve, and files of weights.
 
 import { Perceptron } from "./acrobot-rs/policies.js";
+import { download } from "./files.js";
+import { FULL, Game } from "./game.js";
 import { attempt } from "./parameters.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
 import { parseNumber, parseSeed } from "./settings.js";
@@ -11,6 +13,8 @@ const THRESHOLD = -100;
 /** The untrained policy's mean return. */
 export const BASELINE = -84;
 const EPISODES = 1_000_000;
+/** The episodes of a comparison. */
+const TRIES = 20n;
 
 const $ = (id) => document.getElementById(id);
 
@@ -21,7 +25,7 @@ function parseEpisodes(text) {
 }
 
 /** Calls `ready` with each learnt policy, and `drive` when the user wants to watch it. */
-export function trainingPanel(learner, { ready, drive }) {
+export function trainingPanel(learner, { ready, drive, params }) {
   let worker = null;
   let weights = null;
   /** From the first whole window on. Means of fewer episodes would be a spike. */
@@ -43,6 +47,19 @@ export function trainingPanel(learner, { ready, drive }) {
     weights = bytes;
     $("save").disabled = $("drive").disabled = false;
     ready(policy);
+    return policy;
+  };
+
+  /** Shows how the learnt policy does on the machine that is set. */
+  const compare = (policy) => {
+    let sum = 0;
+    for (let seed = 0n; seed < TRIES; seed++) {
+      const game = new Game(seed, params());
+      while (game.end === null) game.step(FULL * (policy.act(game.acrobot) - 1));
+      sum += game.return;
+    }
+    const mean = minus((sum / Number(TRIES)).toFixed(1));
+    $("elsewhere").textContent = `On the machine of the panel Physics: mean return ${mean}.`;
   };
 
   const stop = (message) => {
@@ -83,7 +100,9 @@ export function trainingPanel(learner, { ready, drive }) {
         passed < 0 ? "below the threshold" : `above the threshold at episode ${passed + WINDOW}`,
       ].join(" · ");
       $("training-status").textContent = text;
-      if (returns.length === episodes) stop();
+      if (returns.length !== episodes) return;
+      stop();
+      compare(learner);
     };
     worker.postMessage({ seed, episodes });
     $("train").textContent = "Stop";
@@ -92,14 +111,7 @@ export function trainingPanel(learner, { ready, drive }) {
 
   $("train").onclick = () => (worker ? stop("stopped") : train());
   $("drive").onclick = drive;
-  $("save").onclick = () => {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([weights]));
-    link.download = "weights.bin";
-    link.click();
-    // Later, because the browser may still be reading it.
-    setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
-  };
+  $("save").onclick = () => download("weights.bin", [weights]);
   $("choose").onclick = () => $("load").click();
   $("load").onchange = async ({ target }) => {
     const [file] = target.files;
@@ -109,7 +121,7 @@ export function trainingPanel(learner, { ready, drive }) {
     if (file === undefined) return;
     try {
       const bytes = new Uint8Array(await file.arrayBuffer());
-      take(bytes);
+      compare(take(bytes));
       stop(); // The next report would replace these weights.
       $("training-status").textContent = `${file.name} is loaded.`;
     } catch (error) {

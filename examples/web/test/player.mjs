@@ -43,7 +43,7 @@ export async function open({ hash = "", prepare, starts = true, ...options }, pl
   if (prepare) await page.addInitScript(prepare);
   await page.goto(origin + hash);
   try {
-    if (starts) await page.waitForSelector("#app:not([hidden])");
+    if (starts) await page.waitForSelector("#first", { state: "detached" });
     await play(page);
     assert.deepEqual(wrong, []);
   } finally {
