@@ -10,7 +10,6 @@
 pub mod rust {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/balance.txt")]
 #[cfg_attr(any(not(doctest), feature = "serde"), doc = include_str!("../docs/embedded-topics.md"))]
 pub mod embedded_topics {}
 
@@ -19,7 +18,6 @@ pub mod embedded_topics {}
 pub mod tasks {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/balance.txt")]
 #[doc = include_str!("../docs/control.md")]
 pub mod control {}
 

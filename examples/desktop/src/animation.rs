@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::iter;
+use std::ops::Range;
 
 use acrobot::State;
 
@@ -11,16 +12,28 @@ pub const DELAY: u16 = 7;
 const LAST: u16 = 200;
 
 /// Links of 1 m, drawn as Gymnasium draws them. Each state is shown for `delay`, in 1/100 s, and
-/// the angles are interpolated between states. The text has no blank line, so that Markdown takes
-/// it as one picture.
-pub fn svg(states: &[State], delay: u16) -> String {
+/// the angles are interpolated between states. In the frames `pushed` the tip has a ring. The text
+/// has no blank line, so that Markdown takes it as one picture.
+pub fn svg(states: &[State], delay: u16, pushed: Range<usize>) -> String {
     let last = usize::from(LAST / delay);
-    let seconds = f64::from(delay) / 100.0 * (states.len() + last) as f64;
+    let frames = states.len() + last;
+    let seconds = f64::from(delay) / 100.0 * frames as f64;
     let rotate = |angle: fn(&State) -> f64| {
         let angles = rotations(states.iter().map(angle), last);
         format!(
             "<animateTransform attributeName=\"transform\" type=\"rotate\" dur=\"{seconds:.2}s\" \
             repeatCount=\"indefinite\" values=\"{angles}\"/>"
+        )
+    };
+    let ring = if pushed.is_empty() {
+        String::new()
+    } else {
+        let times = [pushed.start, pushed.end].map(|frame| frame as f64 / frames as f64);
+        format!(
+            "<circle cy=\"1\" r=\".25\" fill=\"none\" stroke=\"#b25a00\" stroke-width=\".06\">\n\
+            <animate attributeName=\"opacity\" calcMode=\"discrete\" dur=\"{seconds:.2}s\" \
+            repeatCount=\"indefinite\" values=\"0;1;0\" keyTimes=\"0;{:.3};{:.3}\"/></circle>\n",
+            times[0], times[1]
         )
     };
     let link = r##"<path d="M-.1 0h.2v1h-.2z" fill="#0cc"/><circle r=".1" fill="#cc0"/>"##;
@@ -34,7 +47,7 @@ pub fn svg(states: &[State], delay: u16) -> String {
 <g transform="translate(0 1)"><g>
 {}
 {link}
-</g></g>
+{ring}</g></g>
 </g>
 </svg>
 "##,

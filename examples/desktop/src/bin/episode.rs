@@ -1,89 +1,60 @@
-//! An episode as an animated SVG: the bang-bang policy, torque against θ̇1, or a plan.
+//! A planned swing-up, a push, and the recovery, as an animated SVG in real time.
 //!
 //! ```text
-//! cargo run --release -p desktop --bin episode -- --seed 42 --out episode.svg
-//! cargo run --release -p desktop --bin episode -- --balance --out balance.svg
+//! cargo run --release -p desktop --bin episode -- --out episode.svg
 //! ```
 
 use std::path::PathBuf;
 
 use acrobot::control::{Knot, Planner};
-use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::saturate;
-use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
+use acrobot::numpy::Pcg64;
+use acrobot::physics::{Pendulum, saturate};
+use acrobot::{Params, Portable, State};
 use clap::Parser;
-use desktop::{animation, bang_bang, write};
+use desktop::{animation, write};
 
-/// Draws an episode as an animated SVG, about three times as fast as real time.
+/// Draws how a planner swings an acrobot up with 5 N m, and again after a push.
 #[derive(Parser)]
 struct Options {
-    /// Seed of the initial state, and of the disturbance: a decimal integer of any size.
-    #[arg(long, default_value = "42")]
-    seed: SeedSequence,
-    /// Draws in real time how the firmware `balance` swings up and holds the acrobot upright, with
-    /// a motor of 2 N m.
-    #[arg(long)]
-    balance: bool,
     /// File to write.
     #[arg(long, value_name = "FILE", default_value = "episode.svg")]
     out: PathBuf,
-    /// Also writes the picture as a definition for Markdown, because rustdoc's pages have no files
-    /// beside them.
-    #[arg(long, value_name = "FILE", requires = "balance")]
-    definition: Option<PathBuf>,
 }
+
+/// The motor's largest torque, N m, and the part of it that plans use.
+const LIMIT: f64 = 5.0;
+const PLANNED: f64 = 0.9;
+/// Decisions for each plan, and of each part of the episode, each 0.02 s.
+const PLAN: usize = 250;
+const STEPS: usize = 400;
+/// What the push adds to both velocities, rad/s.
+const PUSH: [f64; 2] = [2.5, -1.0];
+/// A frame shows so many decisions, and a ring for so many frames after the push.
+const STEPS_PER_FRAME: usize = 2;
+const RING: usize = 8;
 
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
-    let rng = options.seed.into();
-    let (states, delay) = if options.balance {
-        (balance(rng)?, STEPS_PER_FRAME as u16) // steps of 1/100 s
-    } else {
-        (bang_bang_episode(rng), animation::DELAY)
-    };
-    let svg = animation::svg(&states, delay);
-    if let Some(definition) = &options.definition {
-        let url = svg.replace('\n', "").replace(' ', "%20").replace('"', "'").replace('#', "%23");
-        write(definition, format!("[balance.svg]: data:image/svg+xml,{url}\n"))?;
+    let params = Params { dt: 0.02, ..Params::DEFAULT };
+    let mut planner = Planner::<Portable>::new(params, PLANNED * LIMIT)?;
+    let mut acrobot = Pendulum::<Portable>::new(params, State::HANGING)?;
+    let mut memory = [Knot::EMPTY; PLAN];
+    let mut states = Vec::new();
+    for push in [[0.0; 2], PUSH] {
+        let mut state = acrobot.state();
+        state.dtheta1 += push[0];
+        state.dtheta2 += push[1];
+        acrobot.set_state(state)?;
+        let plan = planner.plan(state, 64, &mut Pcg64::new(1), &mut memory)?;
+        for step in 0..STEPS {
+            if step % STEPS_PER_FRAME == 0 {
+                states.push(acrobot.state());
+            }
+            acrobot.step(saturate(planner.follow(plan, step, acrobot.state()), LIMIT))?;
+        }
     }
-    write(&options.out, svg)?;
+    let pushed = STEPS / STEPS_PER_FRAME..STEPS / STEPS_PER_FRAME + RING;
+    write(&options.out, animation::svg(&states, 2 * STEPS_PER_FRAME as u16, pushed))?;
     println!("{}: {} frames", options.out.display(), states.len());
     Ok(())
-}
-
-fn bang_bang_episode(rng: Pcg64) -> Vec<State> {
-    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::with_rng(rng));
-    let mut states = vec![acrobot.state()];
-    loop {
-        let step = acrobot.step(bang_bang(acrobot.state().dtheta1));
-        states.push(acrobot.state());
-        if step.done() {
-            return states;
-        }
-    }
-}
-
-/// Steps of the balanced acrobot, each 0.01 s.
-const STEPS: usize = 1500;
-/// Each of its frames shows this many steps: 25 frames a second.
-const STEPS_PER_FRAME: usize = 4;
-
-/// The state of each frame.
-fn balance(rng: Pcg64) -> anyhow::Result<Vec<State>> {
-    // As in the firmware with a largest torque of 2 N m.
-    let params = Params { dt: 0.01, torque_noise: 0.5, ..Params::DEFAULT };
-    let mut planner = Planner::<Fast>::new(params, 1.5)?;
-    let mut memory = [Knot::EMPTY; 1250];
-    let plan = planner.plan(State::HANGING, 64, &mut Pcg64::new(1), &mut memory)?;
-    let mut machine = Acrobot::<Fast>::with_rng(rng);
-    machine.set_params(params)?;
-    let mut states = Vec::new();
-    for step in 0..STEPS {
-        let state = machine.state();
-        if step % STEPS_PER_FRAME == 0 {
-            states.push(state.cast());
-        }
-        machine.step_torque(saturate(planner.follow(plan, step, state), 2.0))?;
-    }
-    Ok(states)
 }

@@ -124,7 +124,7 @@ fn draw<const S: usize, const T: usize>(
         learner.greedy(state)
     });
     states.push(env.state().cast());
-    write(Path::new("swing_up.svg"), animation::svg(&states, animation::DELAY))?;
+    write(Path::new("swing_up.svg"), animation::svg(&states, animation::DELAY, 0..0))?;
     println!("swing_up.svg: a greedy episode, {} steps", env.elapsed_steps());
     Ok(())
 }

@@ -54,17 +54,13 @@ impl Folder {
     }
 }
 
-/// The pictures of the README, of docs/control.md and of docs/embedded-topics.md.
+/// The picture of the README.
 #[test]
-fn pictures_are_those_of_the_pages() {
-    let folder = Folder::new("pictures");
+fn the_picture_is_that_of_the_page() {
+    let folder = Folder::new("picture");
     folder.printed("episode");
-    folder.printed("episode --balance --out balance.svg --definition balance.txt");
-    for name in ["episode.svg", "balance.svg", "balance.txt"] {
-        let recorded = common::text_of(&format!("docs/{name}"));
-        let drawn = String::from_utf8(folder.read(name)).unwrap();
-        assert!(drawn == recorded, "docs/{name} differs");
-    }
+    let drawn = String::from_utf8(folder.read("episode.svg")).unwrap();
+    assert!(drawn == common::text_of("docs/episode.svg"), "docs/episode.svg differs");
 }
 
 /// Each model's row says that the acrobot is upright at the end of each part.
