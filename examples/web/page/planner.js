@@ -12,15 +12,15 @@ const PLANNED = 0.9;
 const [LEAD, LONGEST] = [0.16, 5];
 /** How long the regulator needs after a plan to show that it holds, s. */
 const SETTLED = 2;
-/** The largest deviation that is upright, rad and rad/s. */
-const UPRIGHT = 0.1;
+/** The largest deviations that are upright, rad and rad/s. */
+const UPRIGHT = [0.1, 0.1, 0.5, 0.5];
 /**
  * A state that differs by so much from the prediction, rad and rad/s, needs another one: with a
  * plan, and before.
  */
 const [PLANNED_ERROR, ERROR] = [0.05, 0.3];
 /** The parts of an angle's error that correct an estimated angle and, for each step, a velocity. */
-const [ANGLE, VELOCITY] = [0.5, 0.1];
+const [ANGLE, VELOCITY] = [0.2, 0.02];
 /** The most steps of a prediction, so that a tiny time step does not take minutes. */
 const STEPS = 3000;
 
@@ -32,7 +32,7 @@ const deviation = (state, [theta1, theta2, dtheta1, dtheta2]) =>
   [turn(state[0] - theta1), turn(state[1] - theta2), state[2] - dtheta1, state[3] - dtheta2];
 
 export const isUpright = (state) =>
-  deviation(state, [Math.PI, 0, 0, 0]).every((x) => Math.abs(x) < UPRIGHT);
+  deviation(state, [Math.PI, 0, 0, 0]).every((x, i) => Math.abs(x) < UPRIGHT[i]);
 
 const stateOf = (acrobot) => Object.values(acrobot.state);
 

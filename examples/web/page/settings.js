@@ -14,7 +14,7 @@ export const PARAMETERS = [
   ["gravity", "Gravity", "m/s²", 9.8, 25, 0.1, "", 0],
   ["friction", "Friction of both joints", "N m s/rad", 0, 1, 0.01, "", 0],
   ["noise", "Noise of the motor", "N m", 0, 2, 0.05, "A standard deviation.", 0],
-  ["encoders", "Noise of the encoders", "rad", 0, 0.05, 0.001, "With it the planner sees no " +
+  ["encoders", "Noise of the encoders", "rad", 0, 0.01, 0.0005, "With it the planner sees no " +
     "velocities, and estimates them.", 0],
   ["centerOfMass1", "Centre of mass of link 1", "m", 0.5, 2, 0.05, "", 0],
   ["centerOfMass2", "Centre of mass of link 2", "m", 0.5, 2, 0.05, "", 0],

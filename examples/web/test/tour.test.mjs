@@ -1,12 +1,8 @@
 // A visitor's tour: the planner holds the acrobot up, somebody pulls it down, and it recovers.
 
 import assert from "node:assert/strict";
-import { test } from "node:test";
 
-import { decodeRun } from "../dist/link.js";
-import {
-  linked, onPage, open, paused, press, says, shownBits, shows, showsBits, steps, text,
-} from "./player.mjs";
+import { downloaded, linked, onPage, paused, press, says, shows, steps, text } from "./player.mjs";
 
 const holds = (page) => says(page, "#return", /^[1-9]\d*\.\d s$/);
 
@@ -20,34 +16,56 @@ async function drag(page, part, time) {
   await page.mouse.up();
 }
 
-test("the planner holds the acrobot, also after pulls, and a link replays the bits", async () => {
-  let link, state;
-  await open({}, async (page) => {
-    // The module for planning is not loaded before, and not in the page's thread.
-    const files = await page.evaluate(() => performance.getEntriesByType("resource"));
-    assert.deepEqual(files.filter(({ name }) => /control\.js|planning/.test(name)), []);
+onPage("the planner holds the acrobot, also after pulls", {}, async (page) => {
+  // The module for planning is not loaded before, and not in the page's thread.
+  const files = await page.evaluate(() => performance.getEntriesByType("resource"));
+  assert.deepEqual(files.filter(({ name }) => /control\.js|planning/.test(name)), []);
+  await page.click("#balance");
+  await says(page, "#thought", /^Plan of \d/);
+  assert.match(page.workers()[0].url(), /planning\.js$/);
+  await page.selectOption("#pace", "4");
+  await holds(page);
+  await page.selectOption("#pace", "1");
+  await drag(page, 0.3, 400);
+  await shows(page, "#return", "0.0 s");
+  await page.selectOption("#pace", "4");
+  await holds(page);
+});
+
+for (const [machine, settings] of [
+  ["dm_control", {}],
+  ["RealAIGym", {}],
+  ["Gymnasium, 5 N m", { friction: "0.1", noise: "0.2", encoders: "0.002" }],
+]) {
+  const name = `the planner holds the machine of ${machine} with ${JSON.stringify(settings)}`;
+  onPage(name, {}, async (page) => {
+    await page.selectOption("#machine", machine);
+    for (const [id, value] of Object.entries(settings)) await page.fill(`#${id}`, value);
     await page.click("#balance");
-    await says(page, "#thought", /^Plan of \d/);
-    assert.match(page.workers()[0].url(), /planning\.js$/);
     await page.selectOption("#pace", "4");
     await holds(page);
-    await page.selectOption("#pace", "1");
-    await drag(page, 0.3, 400);
-    await shows(page, "#return", "0.0 s");
-    await page.selectOption("#pace", "4");
-    await holds(page);
-    await page.click("#pause");
-    await page.click("#share");
-    [link, state] = [new URL(await page.inputValue("#link")).hash, await shownBits(page)];
-    await says(page, "#link-field label", /^Copied: a link with seed, physics and \d{3} torques$/);
+    assert.equal(await page.inputValue("#machine"), "friction" in settings ? "" : machine);
   });
-  await open({ hash: link, reducedMotion: "reduce" }, async (page) => {
-    await says(page, "#status", /^Replay of a link/);
-    await steps(page, decodeRun(link).levels.length);
-    await showsBits(page, state);
-    await steps(page, 2);
-    assert.equal(await page.inputValue("#policy"), "planner");
-  });
+}
+
+onPage("another acrobot is pulled, too, and an animation is saved", {}, async (page) => {
+  await paused(page, 42);
+  await page.selectOption("#rival", "bang_bang");
+  await page.selectOption("#policy", "bang_bang");
+  await page.focus("#stage");
+  await page.keyboard.down("Shift");
+  await page.keyboard.down("ArrowRight");
+  await steps(page, 9);
+  await page.keyboard.up("Shift");
+  await page.keyboard.up("ArrowRight");
+  const animation = String(await downloaded(page, "#animate"));
+  const [angles, , rings] = animation.match(/values="[^"]*"/g).map((list) => list.split(";"));
+  assert.equal(angles.length, 10);
+  assert.equal(rings.join(), `values="0${",1".repeat(9)}"`);
+  await steps(page, 200);
+  const verdict = await text(page, "#verdict");
+  assert.match(verdict, /^Goal! \d+ steps$/);
+  await shows(page, "#rival-steps", verdict);
 });
 
 onPage("keys push the tip, in every policy", {}, async (page) => {
