@@ -26,7 +26,8 @@ values="${values.join(";")}"`;
   const link = (length) =>
     `<path d="M0 0v${length}" stroke="#0cc" stroke-width=".2"/><circle r=".1" fill="#cc0"/>`;
   return `<svg xmlns="http://www.w3.org/2000/svg" width="400" viewBox="-2.2 -2.2 4.4 4.4">
-<path d="M-2.2-2.2h4.4v4.4h-4.4z" fill="#fff"/><path d="M-2.2-1h4.4" stroke="#000" stroke-width=".01"/>
+<path d="M-2.2-2.2h4.4v4.4h-4.4z" fill="#fff"/>
+<path d="M-2.2-1h4.4" stroke="#000" stroke-width=".01"/>
 <g>${rotation(0)}${link(first)}
 <g transform="translate(0 ${first})"><g>${rotation(1)}${link(second)}
 <circle cy="${second}" r=".25" fill="none" stroke="#b25a00" stroke-width=".06">

@@ -9,7 +9,7 @@ import { decodeRun } from "../dist/link.js";
 
 /* global click, pull, select */
 
-/** Defines functions that act, such as `pull`, which pulls the tip to the side for half a second. */
+/** Defines functions that act: `pull` pulls the tip to the side for half a second. */
 const help = () => {
   window.click = (id) => document.querySelector(id).click();
   window.select = (id, value) => {
