@@ -34,7 +34,6 @@ CORES = {
     "rv32imc": Core("riscv32imc-unknown-none-elf"),
     "rv32imafc": Core("riscv32imafc-unknown-none-elf", True),
 }
-SOFT_FLOATS = ["fast_soft_floats", "micro_soft_floats"]
 ADDITIONS = ["message", "display", "serde", "lqr", "lqr_stack"]
 
 
@@ -145,7 +144,8 @@ def measure_additions():
     return figures | {("fast", name): size(name) - alone for name in others}
 
 
-# Its first cell in the page, and the names of its columns and rows in order; the page has the words.
+# The title is a table's first cell in the page, which has the words. Here columns and rows are the
+# names of its figures, in order.
 Table = collections.namedtuple("Table", "title columns rows measure")
 M4F_ROWS = "step cycles tuned rate draw redraw flash physics size stack learn training"
 M4F_ROWS += " decision decision_ram ram"
@@ -156,7 +156,7 @@ CONTROL += " estimator_params"
 REAL = "upright_ms again_ms tick_instructions slices slice_ticks flash_bytes ram_bytes"
 LIMITS = ["10_Nm", "2_Nm", "1_Nm"]
 ADDED, UPRIGHT = "what a firmware adds to an acrobot", "instructions at 100 Hz, upright"
-ALL = ARITHMETICS + SOFT_FLOATS
+ALL = [*ARITHMETICS, "fast_soft_floats", "micro_soft_floats"]
 TABLES = {
     "m4f": Table("on a Cortex-M4F", ARITHMETICS, M4F_ROWS.split(), measure_m4f),
     "additions": Table(ADDED, ["fast"], ADDITIONS, measure_additions),
