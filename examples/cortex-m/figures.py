@@ -21,85 +21,20 @@ import cycles
 DOCUMENT = pathlib.Path("../../docs/embedded-figures.md")
 M4F = "thumbv7em-none-eabihf"
 TUNED = "-C target-cpu=cortex-m4"
-ARITHMETICS = {name: f"`{name.title()}`" for name in ("fast", "micro", "reference", "portable")}
-ROWS = {
-    "step": "instructions per step, with observation, end test and resets",
-    "cycles": "cycles per step, estimated",
-    "tuned": f"cycles per step with `{TUNED}`, estimated",
-    "rate": "steps per second at 64 MHz with that, estimated",
-    "draw": "instructions per frame of 128×64 pixels",
-    "redraw": "instructions per frame if only what moved is drawn",
-    "flash": "flash of the crate with seeding, bytes",
-    "physics": "flash of the pendulum alone, bytes",
-    "size": "RAM of an `Acrobot`, bytes",
-    "stack": "stack of a step, bytes",
-    "learn": "instructions per step of training",
-    "training": "training until the mean return of 100 episodes is −100, millions of instructions",
-    "decision": "instructions per decision of a perceptron with 64 and 64 units",
-    "decision_ram": "RAM of the whole firmware that plays this perceptron, bytes",
-    "ram": "RAM of the whole firmware that trains, bytes",
-}
+ARITHMETICS = ["fast", "micro", "reference", "portable"]
 M7 = "-C target-cpu=cortex-m7 -C link-arg=--defsym=RAM_ORIGIN=0x60000000"
-CORE_COLUMNS = ARITHMETICS | {
-    "fast_soft_floats": "`Fast`, soft-floats",
-    "micro_soft_floats": "`Micro`, soft-floats",
-}
-Core = collections.namedtuple(
-    "Core", "words target has_fpu rustflags machine", defaults=[False, "", ""]
-)
-# These rows exclude the first table, which has more figures of the Cortex-M4F.
+Core = collections.namedtuple("Core", "target has_fpu rustflags machine", defaults=[False, "", ""])
+# These exclude the first table, which has more figures of the Cortex-M4F.
 CORES = {
-    "m0": Core("Cortex-M0", "thumbv6m-none-eabi"),
-    "m3": Core("Cortex-M3", "thumbv7m-none-eabi"),
-    "m7": Core("Cortex-M7 with `f64`", M4F, True, M7, "mps2-an500"),
-    "m33": Core("Cortex-M33 with FPU", "thumbv8m.main-none-eabihf", True),
-    "rv32i": Core("RV32I", "riscv32i-unknown-none-elf"),
-    "rv32imc": Core("RV32IMC", "riscv32imc-unknown-none-elf"),
-    "rv32imafc": Core("RV32IMAFC", "riscv32imafc-unknown-none-elf", True),
+    "m0": Core("thumbv6m-none-eabi"),
+    "m3": Core("thumbv7m-none-eabi"),
+    "m7": Core(M4F, True, M7, "mps2-an500"),
+    "m33": Core("thumbv8m.main-none-eabihf", True),
+    "rv32i": Core("riscv32i-unknown-none-elf"),
+    "rv32imc": Core("riscv32imc-unknown-none-elf"),
+    "rv32imafc": Core("riscv32imafc-unknown-none-elf", True),
 }
-CORE_ROWS = {name: f"{core.words}, `{core.target}`" for name, core in CORES.items()}
-LIMITS = {"10_Nm": "10 N m, 1,000 initial states"}
-LIMITS |= {f"{limit}_Nm": f"{limit} N m, 100" for limit in (2, 1)}
-BALANCE = {
-    "plan_s": "time of the plan, s",
-    "plan_millions": "planning, millions of instructions",
-    "uncaught": "not caught within 100 s",
-    "catch_mean_s": "mean time to catch, s",
-    "catch_longest_s": "longest time to catch, s",
-    "error_mrad": "largest error of an angle while held, mrad",
-    "instructions_mean": "instructions per decision, mean",
-    "instructions_most": "instructions per decision, most",
-    "flash_bytes": "flash of the whole firmware, bytes",
-    "ram_bytes": "RAM of the whole firmware, bytes",
-}
-CONTROLLED = {name: ARITHMETICS[name] for name in ("fast", "reference")}
-CONTROL = {
-    "linearize": "`linearize`",
-    "linearize_step": "`linearize_step`",
-    "lqr": "`lqr`",
-    "torque": "`difference` and `Lqr::torque`",
-    "inverse_dynamics": "`inverse_dynamics`",
-    "velocities": "`velocities`",
-    "estimator": "`Estimator` with friction, a measurement and a step",
-    "estimator_params": "the same with 10 parameters",
-}
-ADDITIONS = {
-    "message": "flash of `set_params`, and `message` of its error",
-    "display": "flash of `set_params`, and `Display` of its error",
-    "serde": "flash of saving and loading with serde, postcard and a CRC",
-    "lqr": "flash of `linearize_step`, `lqr`, `deviation` and the regulator's torque",
-    "lqr_stack": "stack of `lqr`",
-}
-REAL = {
-    "upright_ms": "upright from hanging, after ms",
-    "again_ms": "upright after a push of 6 rad/s, after ms",
-    "tick_instructions": "instructions of a tick, most",
-    "slices": "slices of planning in 10 s",
-    "slice_ticks": "ticks during a slice, most",
-    "flash_bytes": "flash of the whole firmware, bytes",
-    "ram_bytes": "RAM of the whole firmware, bytes",
-}
-ADDED, UPRIGHT = "what a firmware adds to an acrobot", "instructions at 100 Hz, upright"
+ADDITIONS = ["message", "display", "serde", "lqr", "lqr_stack"]
 
 
 def run(*command, rustflags="", machine="", minimal=""):
@@ -209,27 +144,42 @@ def measure_additions():
     return figures | {("fast", name): size(name) - alone for name in others}
 
 
+# The title is a table's first cell in the page, which has the words. Here columns and rows are the
+# names of its figures, in order.
 Table = collections.namedtuple("Table", "title columns rows measure")
+M4F_ROWS = "step cycles tuned rate draw redraw flash physics size stack learn training"
+M4F_ROWS += " decision decision_ram ram"
+BALANCE = "plan_s plan_millions uncaught catch_mean_s catch_longest_s error_mrad"
+BALANCE += " instructions_mean instructions_most flash_bytes ram_bytes"
+CONTROL = "linearize linearize_step lqr torque inverse_dynamics velocities estimator"
+CONTROL += " estimator_params"
+REAL = "upright_ms again_ms tick_instructions slices slice_ticks flash_bytes ram_bytes"
+LIMITS = ["10_Nm", "2_Nm", "1_Nm"]
+ADDED, UPRIGHT = "what a firmware adds to an acrobot", "instructions at 100 Hz, upright"
+ALL = [*ARITHMETICS, "fast_soft_floats", "micro_soft_floats"]
 TABLES = {
-    "m4f": Table("on a Cortex-M4F", ARITHMETICS, ROWS, measure_m4f),
-    "additions": Table(ADDED, {"fast": "bytes"}, ADDITIONS, measure_additions),
-    "balance": Table("largest torque", LIMITS, BALANCE, lambda: firmware("balance", "10_Nm")),
-    "control": Table(UPRIGHT, CONTROLLED, CONTROL, lambda: printed("bench")),
-    "real": Table("a real acrobot", {"real": "6 N m"}, REAL, lambda: firmware("real", "real")),
-    "cores": Table("instructions per step", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(steps)),
-    "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: of_cores(stacks)),
-    "sizes": Table("bytes of flash", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(sizes)),
+    "m4f": Table("on a Cortex-M4F", ARITHMETICS, M4F_ROWS.split(), measure_m4f),
+    "additions": Table(ADDED, ["fast"], ADDITIONS, measure_additions),
+    "balance": Table(
+        "largest torque", LIMITS, BALANCE.split(), lambda: firmware("balance", "10_Nm")
+    ),
+    "control": Table(UPRIGHT, ["fast", "reference"], CONTROL.split(), lambda: printed("bench")),
+    "real": Table("a real acrobot", ["real"], REAL.split(), lambda: firmware("real", "real")),
+    "cores": Table("instructions per step", ALL, CORES, lambda: of_cores(steps)),
+    "stacks": Table("bytes of stack of a step", ARITHMETICS, CORES, lambda: of_cores(stacks)),
+    "sizes": Table("bytes of flash", ALL, CORES, lambda: of_cores(sizes)),
 }
 
 
-def written(table, figures):
-    """The lines of a table."""
+def write(table, figures, lines):
+    """Replaces the figures of a table in the lines of the page."""
     texts = {key: f"{value:,}" for key, value in figures.items()}
-    yield f"| {table.title} | {' | '.join(table.columns.values())} |"
-    yield "|---|" + "---|" * len(table.columns)
-    for row, words in table.rows.items():
+    head = next(i for i, line in enumerate(lines) if line.startswith(f"| {table.title} |"))
+    rows = range(head + 2, lines.index("", head))
+    for i, row in zip(rows, table.rows, strict=True):
         cells = [texts.get((column, row), "") for column in table.columns]
-        yield f"| {' | '.join([words, *cells])} |"
+        lines[i] = " | ".join([lines[i].split(" | ")[0], *cells]) + " |"
+    print("\n".join(lines[head : rows.stop]), flush=True)
 
 
 def main():
@@ -243,10 +193,7 @@ def main():
     page = DOCUMENT.read_text().splitlines()
     lines = page.copy()
     for table in [TABLES[name] for name in options.tables or TABLES]:
-        rows = list(written(table, table.measure()))
-        print("\n".join(rows), flush=True)
-        start = lines.index(rows[0])
-        lines[start : lines.index("", start)] = rows
+        write(table, table.measure(), lines)
     if options.update:
         DOCUMENT.write_text("\n".join(lines) + "\n")
     elif lines != page:

@@ -7,16 +7,18 @@ const SEEN: [f32; 6] = [0.9, -0.4, 0.5, 0.8, -1.5, 3.0];
 
 /// Layers of two units with tanh and with ReLU, then the outputs.
 fn file(torque_limit: Option<f32>) -> Vec<u8> {
-    let mut bytes = b"MLP1".to_vec();
-    bytes.extend([3, torque_limit.is_some().into(), 6, 0]);
-    bytes.extend(torque_limit.unwrap_or(0.0).to_le_bytes());
     let outputs = if torque_limit.is_some() { 1 } else { 3 };
-    for [outputs, activation] in [[2, 1], [2, 2], [outputs, 0]] {
-        bytes.extend([outputs, 0, activation, 0]);
-    }
-    for i in 0..2 * 7 + 2 * 3 + 3 * usize::from(outputs) {
-        bytes.extend(number(i).to_le_bytes());
-    }
+    let numbers: Vec<f32> = (0..2 * 7 + 2 * 3 + 3 * usize::from(outputs)).map(number).collect();
+    written(torque_limit, &[[2, 1], [2, 2], [outputs, 0]], &numbers)
+}
+
+/// Layers of outputs and activations, and their numbers.
+fn written(torque_limit: Option<f32>, layers: &[[u8; 2]], numbers: &[f32]) -> Vec<u8> {
+    let mut bytes = b"MLP1".to_vec();
+    bytes.extend([layers.len() as u8, torque_limit.is_some().into(), 6, 0]);
+    bytes.extend(torque_limit.unwrap_or(0.0).to_le_bytes());
+    bytes.extend(layers.iter().flat_map(|&[outputs, activation]| [outputs, 0, activation, 0]));
+    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
     sealed(bytes)
 }
 
@@ -123,23 +125,34 @@ fn the_trained_policy_swings_up() {
     assert_eq!(steps, [101, 88, 96, 72, 72]);
 }
 
-/// As the test of the npm package does with the same recording.
 #[test]
 fn sums_that_overflow_play_no_torque() {
-    for line in include_str!("../overflow.txt").lines() {
-        let words: Vec<_> = line.split(' ').collect();
-        let [name, numbers @ .., action, torque, hex] = &words[..] else { panic!("{line}") };
-        let numbers: Vec<f32> = numbers.iter().map(|number| number.parse().unwrap()).collect();
-        let observation = <[f32; 6]>::try_from(numbers).unwrap();
-        let digits = hex.as_bytes().as_chunks::<2>().0;
-        let byte = |pair| u8::from_str_radix(str::from_utf8(pair).unwrap(), 16).unwrap();
-        let file: Vec<_> = digits.iter().map(|pair| byte(pair)).collect();
+    /// A sum of it and itself is infinite.
+    const HUGE: f32 = 3e38;
+    const UP: [f32; 7] = [0.0, HUGE, 0.0, HUGE, 0.0, -HUGE, 0.0];
+    let down = UP.map(|x| 0.0 - x);
+    // The unit changes the last of three scores, which is otherwise the highest.
+    let after = [0.0, 0.0, 0.0, 0.0, 0.5, 1.0];
+    let score = written(None, &[[3, 0]], [[0.0; 7], [0.0; 7], UP].as_flattened());
+    let before =
+        |activation| written(None, &[[1, activation], [3, 0]], &[&down[..], &after].concat());
+    let torque = written(Some(2.0), &[[1, 0]], &UP);
+    assert!(torque == include_bytes!("../torque.bin"), "the Python package writes this file");
+    // What UP adds up to: HUGE; infinity; infinity, but HUGE in another order; no number.
+    let seen = [
+        [0.5, 0.0, 0.5, 0.0, 0.0, 0.0],
+        [1.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+        [1.0, 0.0, 1.0, 0.0, 1.0, 0.0],
+        [1.0, 0.0, 1.0, 0.0, 2.0, 0.0],
+    ];
+    for (name, file, actions, torques) in [
+        ("score", score, [2, 1, 1, 1], [None; 4]),
+        ("low ReLU", before(2), [2, 2, 2, 1], [None; 4]),
+        ("low tanh", before(1), [0, 0, 0, 1], [None; 4]),
+        ("torque", torque, [2, 1, 1, 1], [2.0, 0.0, 0.0, 0.0].map(Some)),
+    ] {
         let policy = Policy::<6>::new(&file).unwrap();
-        let played = (u8::from(policy.action(&observation)), policy.torque(&observation));
-        assert_eq!(
-            played,
-            (action.parse().unwrap(), torque.parse().ok()),
-            "{name} {observation:?}"
-        );
+        assert_eq!(seen.map(|x| u8::from(policy.action(&x))), actions, "{name}");
+        assert_eq!(seen.map(|x| policy.torque(&x)), torques, "{name}");
     }
 }

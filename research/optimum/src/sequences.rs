@@ -1,64 +1,46 @@
-//! The file of the best known sequences: a line for each initial state, with a sign for each
-//! action.
+//! The best known sequences: a line for each initial state, with a sign for each action.
 
-use std::fs;
-use std::path::Path;
+use acrobot::Action;
 
-use acrobot::arithmetic::{Arithmetic, Reference};
-use acrobot::{Acrobot, Action, State};
-use anyhow::{Context, ensure};
-
-use crate::{SEEDS, initial};
-
-const SIGNS: [char; 3] = ['-', '0', '+'];
-
-/// The sequences of a file, one for each initial state, each checked.
-pub fn load(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
-    parse(path).with_context(|| path.display().to_string())
-}
-
-fn parse(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
-    let text = fs::read_to_string(path)?;
-    let lines = text.lines().filter(|line| !line.starts_with('#'));
-    let sequences = lines.map(|line| {
-        let action = |sign| Some(Action::ALL[SIGNS.iter().position(|&s| s == sign)?]);
-        let actions = line.chars().map(action).collect::<Option<_>>();
-        actions.with_context(|| format!("a line must have only - 0 +, got {line}"))
-    });
-    let sequences = sequences.collect::<anyhow::Result<Vec<Vec<_>>>>()?;
-    let found = sequences.len();
-    ensure!(found == SEEDS as usize, "must have {SEEDS} sequences, got {found}");
-    for (seed, sequence) in (0..).zip(&sequences) {
-        ensure!(
-            reaches::<Reference>(initial(seed), sequence),
-            "the sequence for seed {seed} must reach the goal with its last action"
-        );
-    }
-    Ok(sequences)
-}
-
-/// Whether the last action reaches the goal, and none before.
-pub fn reaches<A: Arithmetic<Scalar = f64>>(initial: State, actions: &[Action]) -> bool {
-    let mut acrobot = Acrobot::<A>::new(0);
-    acrobot.set_state(initial).expect("a finite state");
-    let last = actions.iter().position(|&action| acrobot.step(action).terminated);
-    last.is_some_and(|last| last + 1 == actions.len())
+/// A sequence for each initial state.
+pub fn load() -> Vec<Vec<Action>> {
+    let lines = include_str!("../sequences.txt").lines().filter(|line| !line.starts_with('#'));
+    let action = |sign| match sign {
+        '-' => Action::Negative,
+        '0' => Action::Zero,
+        '+' => Action::Positive,
+        other => panic!("a line must have only - 0 +, got {other}"),
+    };
+    lines.map(|line| line.chars().map(action).collect()).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use acrobot::arithmetic::Host;
-    use common::{absolute, assert_says};
+    use acrobot::arithmetic::{Arithmetic, Host, Reference};
+    use acrobot::{Acrobot, State};
+    use common::assert_says;
 
     use super::*;
-    use crate::{FILE, mean_return};
+    use crate::{SEEDS, initial, mean_return};
+
+    /// Whether the last action reaches the goal, and none before.
+    fn reaches<A: Arithmetic<Scalar = f64>>(initial: State, actions: &[Action]) -> bool {
+        let mut acrobot = Acrobot::<A>::new(0);
+        acrobot.set_state(initial).unwrap();
+        let last = actions.iter().position(|&action| acrobot.step(action).terminated);
+        last.is_some_and(|last| last + 1 == actions.len())
+    }
 
     /// `Host` has Gymnasium's own bits where the C library is the recorded one.
     #[test]
     fn the_best_sequences_reach_the_goal_in_both_arithmetics() {
-        let sequences = load(&absolute(FILE)).unwrap();
+        let sequences = load();
         let mean = mean_return(sequences.iter().flatten().count() as f64);
         assert_says("docs/optimum.md", &format!("| best known | −{:.2} |", -mean));
+        assert_eq!(sequences.len(), SEEDS as usize);
+        for (seed, sequence) in (0..).zip(&sequences) {
+            assert!(reaches::<Reference>(initial(seed), sequence), "seed {seed}");
+        }
         let all = (0..).zip(&sequences);
         let in_host = all.filter(|(seed, sequence)| reaches::<Host>(initial(*seed), sequence));
         assert!(in_host.count() >= 990);
