@@ -3,13 +3,17 @@
 //! ```text
 //! cargo run --release -p desktop --bin stay_up                 # dm_control's swing-up
 //! cargo run --release -p desktop --bin stay_up -- --gymnasium  # Gymnasium's acrobot with 1 N m
+//! cargo run --release -p desktop --bin stay_up -- --replan     # both in real time
 //! ```
 //!
-//! The planner plans before the acrobot moves. Prints the mean return of episodes of 1,000 steps,
-//! from the initial states of `Acrobot::new(seed)` for seeds from 0, or how many of Gymnasium's
-//! initial states end upright.
+//! The planner plans before the acrobot moves. Prints the mean return of
+//! episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or
+//! how many of Gymnasium's initial states end upright.
 
+mod replan;
 mod search;
+
+use std::ops::Range;
 
 use acrobot::arithmetic::Arithmetic;
 use acrobot::control::{Knot, NoPlan, Planner, difference};
@@ -21,12 +25,17 @@ use clap::Parser;
 use rayon::prelude::*;
 use search::Search;
 
-/// Gymnasium's acrobot: the largest torque, N m, decisions a second, the most steps of a plan, and
-/// tries.
-const LIMIT: f32 = 1.0;
+/// Largest torques, N m.
+const SWINGUP: f32 = 2.0;
+const GYMNASIUM: f32 = 1.0;
+
+/// Gymnasium's acrobot: decisions a second, the most steps of a plan, and tries.
 const RATE: usize = 50;
 const STEPS: usize = 1250;
 const TRIES: u32 = 64;
+
+/// The steps of first guesses for the swing-up.
+const LENGTHS: Range<usize> = 150..600;
 
 /// The whole search begins again, so many times, while the best return is below this.
 const AGAIN: u32 = 2;
@@ -41,6 +50,9 @@ struct Options {
     /// Plays Gymnasium's acrobot with its torque of 1 N m, 50 times a second, for 50 s.
     #[arg(long)]
     gymnasium: bool,
+    /// Plays both tasks with wrong models and noise, and plans again while the acrobot moves.
+    #[arg(long, conflicts_with = "gymnasium")]
+    replan: bool,
 }
 
 /// An episode: the sum of its rewards, and the first step after which it was always upright.
@@ -61,25 +73,41 @@ impl Episode {
     ) -> anyhow::Result<Self> {
         let mut episode = Self::default();
         for i in 0..steps {
-            let torque = saturate(planner.follow(plan, i, acrobot.state()), limit);
-            episode.total += f64::from(acrobot.step_torque(torque)?.reward);
-            let [theta1, theta2, ..] = difference(acrobot.state(), State::UPRIGHT);
-            if theta1.abs().max(theta2.abs()) > 0.1 {
-                episode.upright = i + 1;
-            }
+            let torque = planner.follow(plan, i, acrobot.state());
+            episode.step(&mut acrobot, saturate(torque, limit), i)?;
         }
         Ok(episode)
+    }
+
+    /// Takes step `i`.
+    fn step<A: Arithmetic<Scalar = f32>, T: Task>(
+        &mut self,
+        acrobot: &mut Acrobot<A, T>,
+        torque: f32,
+        i: usize,
+    ) -> anyhow::Result<()> {
+        self.total += f64::from(acrobot.step_torque(torque)?.reward);
+        let [theta1, theta2, ..] = difference(acrobot.state(), State::UPRIGHT);
+        if theta1.abs().max(theta2.abs()) > 0.1 {
+            self.upright = i + 1;
+        }
+        Ok(())
+    }
+
+    /// Whether an episode of so many steps is upright in its last hundred.
+    fn holds(&self, steps: usize) -> bool {
+        self.upright + 100 <= steps
     }
 }
 
 fn swing_up(seed: u64) -> anyhow::Result<Episode> {
-    let mut search = Search::new(seed)?;
-    let mut best = search.run()?;
+    let mut search = Search::new(Acrobot::new(seed), SWINGUP, LENGTHS, 1000, seed)?;
+    let (mut best, _) = search.run(1)?;
     for _ in 0..AGAIN {
         if best.total >= POOR {
             break;
         }
-        let other = search.run()?;
+        let (other, _) = search.run(1)?;
         if other.total > best.total {
             best = other;
         }
@@ -91,18 +119,21 @@ fn swing_up(seed: u64) -> anyhow::Result<Episode> {
 fn gymnasium(seed: u64) -> anyhow::Result<Episode> {
     let params = Params { dt: 1.0 / RATE as f32, ..Params::DEFAULT };
     let acrobot = Acrobot::<Fast>::with_params(seed, params)?;
-    let mut planner = Planner::<Fast>::new(params, LIMIT)?;
+    let mut planner = Planner::<Fast>::new(params, GYMNASIUM)?;
     let found = planner.search(acrobot.state(), TRIES, &mut Pcg64::new(seed), STEPS);
     let plan = match found {
         Ok(plan) => plan,
         Err(NoPlan::NotFound { .. }) => vec![],
         Err(error) => return Err(error.into()),
     };
-    Episode::play(acrobot, &planner, &plan, LIMIT, 50 * RATE)
+    Episode::play(acrobot, &planner, &plan, GYMNASIUM, 50 * RATE)
 }
 
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
+    if options.replan {
+        return replan::tables(options.episodes);
+    }
     let seeds = (0..u64::from(options.episodes)).into_par_iter();
     let count = options.episodes;
     let play = if options.gymnasium { gymnasium } else { swing_up };
@@ -119,7 +150,7 @@ fn main() -> anyhow::Result<()> {
     let mean = average(&mut totals.clone());
     let sd = average(&mut totals.clone().map(|x| (x - mean) * (x - mean))).sqrt();
     let worst = totals.fold(f64::INFINITY, f64::min);
-    let held = episodes.iter().filter(|episode| episode.upright <= 900).count();
+    let held = episodes.iter().filter(|episode| episode.holds(1000)).count();
     println!(
         "mean return of {count} episodes: {mean:.0} ± {sd:.0}, the worst {worst:.0}, held {held}"
     );

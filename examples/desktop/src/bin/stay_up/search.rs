@@ -4,21 +4,18 @@
 //! plans: it changes a few torques of a plan, removes some of its steps or repeats them, and plans
 //! again from there, many plans side by side.
 
+use std::ops::Range;
+
 use acrobot::arithmetic::Damped;
 use acrobot::control::{Knot, Planner};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::saturate;
 use acrobot::task::Swingup;
-use acrobot::{Acrobot, Fast};
+use acrobot::{Acrobot, Fast, Params, State};
 
 use crate::Episode;
 
-/// The largest torque, N m, and the steps of an episode.
-const LIMIT: f32 = 2.0;
-const STEPS: usize = 1000;
-/// First guesses, and their steps.
 const GUESSES: usize = 128;
-const LENGTHS: [usize; 2] = [150, 600];
 /// After a few iterations the best of them are planned until no iteration helps.
 const FEW: u32 = 25;
 const ALL: u32 = 150;
@@ -30,21 +27,36 @@ const CHANGES: usize = 16;
 const ITERATIONS: u32 = 50;
 /// The most steps that a change is about.
 const WINDOW: usize = 30;
+/// Planning again takes so many iterations, and so many rounds until a plan holds.
+const AGAIN: u32 = 12;
+const TRIES: usize = 2;
 
-type Plan = Vec<Knot<f32>>;
+pub type Plan = Vec<Knot<f32>>;
 
+/// The search for the best plan from a state.
+#[derive(Clone)]
 pub struct Search {
-    acrobot: Acrobot<Damped<Fast>, Swingup>,
-    planner: Planner<Damped<Fast>>,
-    rng: Pcg64,
+    pub acrobot: Acrobot<Damped<Fast>, Swingup>,
+    pub planner: Planner<Damped<Fast>>,
+    /// The largest torque of plans, N m.
+    limit: f32,
+    /// The steps of first guesses, and those of an episode.
+    lengths: Range<usize>,
+    pub steps: usize,
+    pub rng: Pcg64,
 }
 
 impl Search {
-    /// Searches from the initial state of a seed.
-    pub fn new(seed: u64) -> anyhow::Result<Self> {
-        let acrobot = Acrobot::new(seed);
-        let planner = Planner::new(*acrobot.params(), LIMIT)?;
-        Ok(Self { acrobot, planner, rng: Pcg64::new(seed) })
+    /// Searches from the acrobot's state.
+    pub fn new(
+        acrobot: Acrobot<Damped<Fast>, Swingup>,
+        limit: f32,
+        lengths: Range<usize>,
+        steps: usize,
+        seed: u64,
+    ) -> anyhow::Result<Self> {
+        let planner = Planner::new(*acrobot.params(), limit)?;
+        Ok(Self { acrobot, planner, limit, lengths, steps, rng: Pcg64::new(seed) })
     }
 
     /// Improves plans, and simulates an episode that follows each.
@@ -56,9 +68,15 @@ impl Search {
         self.planner.improve_all(self.acrobot.state(), iterations, &mut plans)?;
         let play = |plan: Plan| {
             let acrobot = self.acrobot.clone();
-            Ok((Episode::play(acrobot, &self.planner, &plan, LIMIT, STEPS)?, plan))
+            Ok((Episode::play(acrobot, &self.planner, &plan, self.limit, self.steps)?, plan))
         };
         plans.into_iter().map(play).collect()
+    }
+
+    fn guess(&mut self) -> anyhow::Result<Plan> {
+        let mut plan = vec![Knot::EMPTY; self.draw(self.lengths.start, self.lengths.end)];
+        self.planner.guess(self.acrobot.state(), &mut self.rng, &mut plan)?;
+        Ok(plan)
     }
 
     /// A whole number from `low` up to but not including `high`.
@@ -73,9 +91,9 @@ impl Search {
         let window = end - self.draw(1, WINDOW + 1).min(end)..end;
         match self.draw(0, 3) {
             0 => {
-                let push = (f64::from(LIMIT) * uniform(&mut self.rng, -1.0, 1.0)) as f32;
+                let push = (f64::from(self.limit) * uniform(&mut self.rng, -1.0, 1.0)) as f32;
                 for torque in &mut torques[window] {
-                    *torque = saturate(*torque + push, LIMIT);
+                    *torque = saturate(*torque + push, self.limit);
                 }
             }
             1 if torques.len() > 2 * WINDOW => drop(torques.drain(window)),
@@ -87,23 +105,22 @@ impl Search {
         torques.into_iter().map(Knot::open).collect()
     }
 
-    /// The episode of the best plan.
-    pub fn run(&mut self) -> anyhow::Result<Episode> {
+    /// The best plan of a part of the search.
+    pub fn run(&mut self, part: usize) -> anyhow::Result<(Episode, Plan)> {
         let mut guesses = Vec::new();
-        for _ in 0..GUESSES {
-            let mut plan = vec![Knot::EMPTY; self.draw(LENGTHS[0], LENGTHS[1])];
-            self.planner.guess(self.acrobot.state(), &mut self.rng, &mut plan)?;
-            guesses.push(plan);
+        for _ in 0..GUESSES / part {
+            guesses.push(self.guess()?);
         }
         guesses.sort_by_key(Vec::len); // those side by side have similar lengths
         let costs = self.planner.improve_all(self.acrobot.state(), FEW, &mut guesses)?;
         let mut guesses: Vec<_> = costs.into_iter().zip(guesses).collect();
         guesses.sort_by(|(a, _), (b, _)| value(a).total_cmp(&value(b)));
-        guesses.truncate(KEPT);
+        guesses.truncate(KEPT / part.min(4));
         let mut best = self.improve(ALL, guesses.into_iter().map(|(_, plan)| plan).collect())?;
-        for round in 0..ROUNDS {
+        let rounds = ROUNDS / part;
+        for round in 0..rounds {
             best.sort_by(|(a, _), (b, _)| b.total.total_cmp(&a.total));
-            best.truncate(if round < ROUNDS / 2 { CHANGED } else { 1 });
+            best.truncate(if round < rounds / 2 { CHANGED } else { 1 });
             let plans = (0..CHANGES).map(|i| self.change(&best[i % best.len()].1)).collect();
             let changed = self.improve(ITERATIONS, plans)?;
             let len = best.len();
@@ -114,7 +131,38 @@ impl Search {
             }
         }
         best.sort_by(|(a, _), (b, _)| b.total.total_cmp(&a.total));
-        Ok(best.swap_remove(0).0)
+        Ok(best.swap_remove(0))
+    }
+
+    /// Plans again from a state, with other parameters and so many steps left: improves the rest of
+    /// a plan, and if that does not hold, tries others.
+    pub fn again(
+        &mut self,
+        state: State<f32>,
+        params: Params<f32>,
+        steps: usize,
+        rest: Plan,
+    ) -> anyhow::Result<Plan> {
+        self.acrobot.set_params(params)?;
+        self.acrobot.set_state(state)?;
+        self.planner = Planner::new(params, self.limit)?;
+        self.steps = steps;
+        let mut best = self.improve(AGAIN, vec![rest])?.swap_remove(0);
+        for _ in 0..TRIES {
+            if best.0.holds(steps) {
+                break;
+            }
+            let mut plans = Vec::new();
+            for i in 0..CHANGES {
+                plans.push(if i % 2 == 0 { self.guess()? } else { self.change(&best.1) });
+            }
+            for other in self.improve(ITERATIONS, plans)? {
+                if other.0.total > best.0.total {
+                    best = other;
+                }
+            }
+        }
+        Ok(best.1)
     }
 }
 
