@@ -6,6 +6,8 @@ import { FULL } from "./game.js";
 import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed, textOf } from "./settings.js";
 
 const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
+/** Who plays on after the inputs. */
+const POLICIES = ["planner", "bang_bang", "energy_law", "random"];
 /** The largest push in its units. */
 const PUSH = 2 ** 20;
 
@@ -23,7 +25,7 @@ export function encodeRun(run) {
   for (const [name, value] of Object.entries(params)) {
     if (value !== DEFAULTS[name]) fields.set(name, textOf(value));
   }
-  if (policy === "planner") fields.set("policy", policy);
+  if (POLICIES.includes(policy)) fields.set("policy", policy);
   const actions = actionsOf(run);
   const pushed = pushes.flatMap((push, step) => (push === null ? [] : [step, ...push]));
   const lists = {
@@ -53,8 +55,10 @@ export function decodeRun(hash) {
     if (fields.has(name)) params[name] = parseNumber(fields.get(name));
   }
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
-  const policy = fields.get("policy") ?? "planner";
-  if (policy !== "planner") rejected("policy in the link must be planner", policy);
+  const policy = fields.get("policy") ?? undefined;
+  if (policy !== undefined && !POLICIES.includes(policy)) {
+    rejected(`policy in the link must be ${POLICIES.join(", ")}`, policy);
+  }
   const seed = parseSeed(fields.get("seed") ?? "42");
 
   const actions = fields.get("actions") ?? "";
@@ -86,5 +90,5 @@ export function decodeRun(hash) {
   if (state.length % 4 !== 0) rejected("state must be 4 numbers", state);
   const entries = state.map((number, i) => [STATE[i], number]);
   const start = entries.length === 0 ? null : Object.fromEntries(entries);
-  return { seed, params, policy: fields.get("policy") ?? undefined, start, levels, pushes };
+  return { seed, params, policy, start, levels, pushes };
 }

@@ -83,7 +83,7 @@ function start() {
       const policy = $("policy").value;
       const replays = policy === "link";
       if (replays && index === recorded.levels.length) {
-        if (recorded.policy === "planner") return choose("planner");
+        if (recorded.policy) return choose(recorded.policy);
         return pause("The replay has ended. Press Restart, or an arrow and Play.");
       }
       const pushed = replays ? recorded.pushes[index] : push();

@@ -131,7 +131,7 @@ test("a link replays a run, and an invalid link is rejected", async () => {
   await open({ hash: "#seed=4&mass1=0" }, async (page) => {
     const reason = "mass1 must be finite and above 0 kg, got 0";
     await shows(page, "#status", `The link is invalid: ${reason}`);
-    assert.match(await page.url(), /#seed=42$/);
+    assert.match(await page.url(), /#seed=42&policy=bang_bang$/);
     assert.equal(await page.inputValue("#seed"), "42");
     assert.equal(await page.inputValue("#mass1"), "1");
     // The address of an episode begins it again.
