@@ -221,7 +221,7 @@ function start() {
       "return-label": game.free ? "Upright for" : "Return",
       "pause": playing ? "Pause" : "Play",
       "verdict": verdict(game) ?? "",
-      "rival-label": $("rival").selectedOptions[0].textContent,
+      "rival-label": `Grey: ${$("rival").selectedOptions[0].textContent}`,
       "rival-steps": isUpright(other.numbers) ? "upright" : verdict(other) ?? `${other.steps}`,
     };
     for (const [id, text] of Object.entries(texts)) write(id, text);
