@@ -8,8 +8,6 @@
 //!
 //! docs/optimum.md explains both.
 
-use std::path::Path;
-
 use acrobot::arithmetic::Reference;
 use acrobot::{Acrobot, State};
 use clap::Parser;
@@ -20,8 +18,6 @@ mod sequences;
 mod table;
 mod taylor;
 
-use sequences::load;
-
 /// Compares policies with short sequences of actions to the goal, and proves a bound.
 #[derive(Parser)]
 enum Options {
@@ -31,13 +27,12 @@ enum Options {
     Bound,
 }
 
-const FILE: &str = "research/optimum/sequences.txt";
 /// The initial states are those of the seeds from 0 on.
 const SEEDS: u32 = 1000;
 
 fn main() -> anyhow::Result<()> {
     match Options::parse() {
-        Options::Table => table::print(&load(Path::new(FILE))?),
+        Options::Table => table::print(&sequences::load()?),
         Options::Bound => bound::prove(),
     }
 }
@@ -50,14 +45,4 @@ fn initial(seed: u64) -> State {
 /// The mean return, given the steps of all episodes.
 fn mean_return(steps: f64) -> f64 {
     1.0 - steps / f64::from(SEEDS)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_missing_file_is_rejected_with_its_name() {
-        assert_eq!(load(Path::new("none.txt")).unwrap_err().to_string(), "none.txt");
-    }
 }

@@ -1,31 +1,21 @@
 //! The file of the best known sequences: a line for each initial state, with a sign for each
 //! action.
 
-use std::fs;
-use std::path::Path;
-
 use acrobot::arithmetic::{Arithmetic, Reference};
 use acrobot::{Acrobot, Action, State};
 use anyhow::{Context, ensure};
 
 use crate::{SEEDS, initial};
 
-const SIGNS: [char; 3] = ['-', '0', '+'];
-
-/// The sequences of a file, one for each initial state, each checked.
-pub fn load(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
-    parse(path).with_context(|| path.display().to_string())
-}
-
-fn parse(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
-    let text = fs::read_to_string(path)?;
-    let lines = text.lines().filter(|line| !line.starts_with('#'));
+/// The sequences, one for each initial state, each checked.
+pub fn load() -> anyhow::Result<Vec<Vec<Action>>> {
+    let lines = include_str!("../sequences.txt").lines().filter(|line| !line.starts_with('#'));
     let sequences = lines.map(|line| {
-        let action = |sign| Some(Action::ALL[SIGNS.iter().position(|&s| s == sign)?]);
-        let actions = line.chars().map(action).collect::<Option<_>>();
+        let action = |sign| Some(Action::ALL["-0+".find(sign)?]);
+        let actions = line.chars().map(action).collect::<Option<Vec<_>>>();
         actions.with_context(|| format!("a line must have only - 0 +, got {line}"))
     });
-    let sequences = sequences.collect::<anyhow::Result<Vec<Vec<_>>>>()?;
+    let sequences = sequences.collect::<anyhow::Result<Vec<_>>>()?;
     let found = sequences.len();
     ensure!(found == SEEDS as usize, "must have {SEEDS} sequences, got {found}");
     for (seed, sequence) in (0..).zip(&sequences) {
@@ -48,15 +38,15 @@ pub fn reaches<A: Arithmetic<Scalar = f64>>(initial: State, actions: &[Action]) 
 #[cfg(test)]
 mod tests {
     use acrobot::arithmetic::Host;
-    use common::{absolute, assert_says};
+    use common::assert_says;
 
     use super::*;
-    use crate::{FILE, mean_return};
+    use crate::mean_return;
 
     /// `Host` has Gymnasium's own bits where the C library is the recorded one.
     #[test]
     fn the_best_sequences_reach_the_goal_in_both_arithmetics() {
-        let sequences = load(&absolute(FILE)).unwrap();
+        let sequences = load().unwrap();
         let mean = mean_return(sequences.iter().flatten().count() as f64);
         assert_says("docs/optimum.md", &format!("| best known | −{:.2} |", -mean));
         let all = (0..).zip(&sequences);
