@@ -146,9 +146,9 @@ fn main() -> anyhow::Result<()> {
         return Ok(());
     }
     let totals = episodes.iter().map(|episode| episode.total);
-    let average = |numbers: &mut dyn Iterator<Item = f64>| numbers.sum::<f64>() / f64::from(count);
-    let mean = average(&mut totals.clone());
-    let sd = average(&mut totals.clone().map(|x| (x - mean) * (x - mean))).sqrt();
+    let mean = totals.clone().sum::<f64>() / f64::from(count);
+    let squares = totals.clone().map(|x| (x - mean) * (x - mean));
+    let sd = (squares.sum::<f64>() / f64::from(count)).sqrt();
     let worst = totals.fold(f64::INFINITY, f64::min);
     let held = episodes.iter().filter(|episode| episode.holds(1000)).count();
     println!(
