@@ -6,9 +6,7 @@
 //! cargo run --release -p desktop --bin real -- --first 20    # other seeds
 //! ```
 //!
-//! After 10 s a push changes both velocities by up to 1 rad/s, and after 20 s by up to 6 rad/s. The
-//! table has how many acrobots are upright in the last second before each push and before the end,
-//! and the times that they needed.
+//! docs/real.md has the table that it prints, and explains it.
 
 use std::f64::consts::TAU;
 
@@ -26,10 +24,10 @@ type Machine = mpc::Machine<Damped<Portable>>;
 
 /// Ticks of 2 ms between two pushes.
 const TICKS: u32 = 5000;
-/// An acrobot is upright within these angles, rad, and for so many ticks.
+/// An acrobot is upright within these angles, rad, for so many ticks before a push and the end.
 const UPRIGHT: f64 = 0.1;
 const HELD: u32 = 500;
-/// What the pushes change, rad/s.
+/// How much the pushes change both velocities at most, rad/s.
 const PUSHES: [f64; 3] = [1.0, 6.0, 0.0];
 
 /// Rehearses the control of a real acrobot.

@@ -1,5 +1,4 @@
-//! Q(λ) with replay learns to swing up within seconds. The greedy policy is then compared with two
-//! policies that do not learn.
+//! Q(λ) with replay learns to swing up within seconds.
 //!
 //! ```text
 //! cargo run --release -p desktop --bin swing_up -- --steps 1000000 --save weights.bin

@@ -6,9 +6,7 @@
 //! cargo run --release -p desktop --bin stay_up -- --replan     # both in real time
 //! ```
 //!
-//! The planner plans before the acrobot moves. Prints the mean return of
-//! episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or
-//! how many of Gymnasium's initial states end upright.
+//! The initial states are those of `Acrobot::new(seed)` for seeds from 0.
 
 mod replan;
 mod search;
