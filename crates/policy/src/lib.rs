@@ -147,9 +147,8 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
                 _ => Action::Zero,
             };
         }
-        let actions = Action::ALL;
         let mut best = (Action::Negative, f32::NEG_INFINITY);
-        for (action, &score) in actions.into_iter().zip(&scores) {
+        for (action, &score) in Action::ALL.into_iter().zip(&scores) {
             if score > best.1 {
                 best = (action, score);
             }

@@ -274,17 +274,18 @@ mod tests {
         assert_eq!([goal, fast].map(|y| least_steps(y.into())), [None; 2]);
     }
 
-    const LONGEST: [f64; 4] = [-0.31028, 1.05353, 0.80987, 6.04149];
-    const LATEST: [f64; 4] = [-0.15488, 0.80654, -0.93411, 6.67199];
-    /// Steps from here reach the target by their height alone.
-    const HIGHEST: [f64; 4] = [-1.40517, 3.00841, -1.44586, 0.76542];
-
     /// Near the states that are nearest to a contradiction, of ten million and of climbs from them.
     #[test]
     fn bounds_that_are_too_tight_are_not_proved() {
         let proves = |at_target, unit| {
             let near = |y| prove_in([at_target, unit], y, [1.0 / 64.0; 4], &TORQUES, 30).is_ok();
-            [LONGEST, LATEST, HIGHEST].map(near)
+            // Steps from the last one reach the target by their height alone.
+            [
+                [-0.31028, 1.05353, 0.80987, 6.04149],
+                [-0.15488, 0.80654, -0.93411, 6.67199],
+                [-1.40517, 3.00841, -1.44586, 0.76542],
+            ]
+            .map(near)
         };
         assert_eq!(proves(AT_TARGET, UNIT), [true, true, true]);
         assert_eq!(proves(AT_TARGET, UNIT - 0.015), [false, true, true]);

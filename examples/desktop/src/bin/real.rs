@@ -10,12 +10,11 @@
 
 use std::f64::consts::TAU;
 
-use acrobot::Params;
-use acrobot::Portable;
 use acrobot::arithmetic::Damped;
 use acrobot::control::{ControlError, Evidence, Sample};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Joints;
+use acrobot::{Params, Portable};
 use clap::Parser;
 use mpc::{Controller, Replanner, Settings};
 use rayon::prelude::*;
@@ -49,10 +48,6 @@ type Model = fn(Params, u64) -> Result<Params, ControlError>;
 
 /// The motion of a machine between pushes: seconds until upright, if it then stays there.
 type Motion = [Option<f64>; PUSHES.len()];
-
-fn without_friction(truth: Params, _: u64) -> Result<Params, ControlError> {
-    Ok(Params { friction: Joints::default(), coulomb: Joints::default(), ..truth })
-}
 
 /// Shakes a machine for 10 s with up to 3 N m, and identifies it from what the encoders counted.
 fn identified(truth: Params, seed: u64) -> Result<Params, ControlError> {
@@ -111,7 +106,9 @@ fn main() -> anyhow::Result<()> {
     let models: [(&str, Model); 3] = [
         ("the true one", |truth, _| Ok(truth)),
         ("identified", identified),
-        ("without friction", without_friction),
+        ("without friction", |truth, _| {
+            Ok(Params { friction: Joints::default(), coulomb: Joints::default(), ..truth })
+        }),
     ];
     for (name, model) in models {
         let seeds = (first..first + count).into_par_iter();

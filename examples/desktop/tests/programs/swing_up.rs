@@ -3,14 +3,10 @@
 use super::Folder;
 
 impl Folder {
-    fn swing_up(&self, arguments: &str) -> String {
-        self.printed(&format!("swing_up {arguments}"))
-    }
-
     /// The figures of the line that `--quiet` prints: the episode that solved the task, if any, the
     /// greedy policy's mean and standard deviation, and its misses.
     fn figures(&self, arguments: &str) -> [Option<f64>; 4] {
-        let line = self.swing_up(&format!("--quiet {arguments}"));
+        let line = self.printed(&format!("swing_up --quiet {arguments}"));
         let words: Vec<&str> = line.split_whitespace().collect();
         assert_eq!(
             [0, 2, 4, 6].map(|i| words[i]),
@@ -40,7 +36,7 @@ fn swing_up_learns_and_loads_what_it_saved() {
 #[test]
 fn swing_up_is_better_than_torque_against_the_velocity() {
     let folder = Folder::new("baseline");
-    let output = folder.swing_up("--seed 42");
+    let output = folder.printed("swing_up --seed 42");
     let row = |policy: &str| -> [f64; 3] {
         let row = output.lines().find_map(|line| line.strip_prefix(policy));
         let row = row.unwrap_or_else(|| panic!("{output}")).replace('±', "");
