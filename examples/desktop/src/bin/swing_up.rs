@@ -46,9 +46,8 @@ struct Options {
     quiet: bool,
 }
 
-/// The episodes of an evaluation.
+/// The episodes of an evaluation, and of a mean while it learns.
 const EVALUATION: u32 = 1000;
-/// The episodes of a mean while it learns.
 const LATEST: usize = 100;
 
 fn main() -> anyhow::Result<()> {
