@@ -32,9 +32,9 @@ fn main() {
     }
     let mut own = VecBatch::<Fast>::new(SeedSequence::new(0), 1024).expect("memory for the batch");
     own.own_params().expect("memory for the batch");
-    versus("fast_1024_own_params", Play::from(own), Play::<Fast>::new(1024));
+    versus("batch_fast_1024_own_params", Play::from(own), Play::<Fast>::new(1024));
     let swingup = Play::<Damped<Fast>, Swingup>::new(1024);
-    versus("fast_1024_swingup", swingup, Play::<Fast>::new(1024));
+    versus("batch_fast_1024_swingup", swingup, Play::<Fast>::new(1024));
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
     batch::<Portable>("portable", 1024, SimdLevel::widest());
@@ -46,20 +46,18 @@ fn main() {
 
 const ROUNDS: usize = 7;
 
-/// The best rates of `ours` and `yardstick`, interleaved. Each returns how many steps it took.
-fn compare(mut ours: impl FnMut() -> usize, mut yardstick: impl FnMut() -> usize) -> (f64, f64) {
+/// Prints the best rate of `ours`, and its ratio to that of `yardstick`, interleaved. Each returns
+/// how many steps it took.
+fn compare(name: &str, mut ours: impl FnMut() -> usize, mut yardstick: impl FnMut() -> usize) {
     let rate = |run: &mut dyn FnMut() -> usize| {
         let start = Instant::now();
         let steps = run();
         steps as f64 / start.elapsed().as_secs_f64()
     };
-    (0..ROUNDS).fold((0.0, 0.0), |(best, bare), _| {
+    let (best, bare) = (0..ROUNDS).fold((0.0, 0.0), |(best, bare), _| {
         (f64::max(best, rate(&mut ours)), f64::max(bare, rate(&mut yardstick)))
-    })
-}
-
-fn report(name: &str, (rate, yardstick): (f64, f64)) {
-    println!("{name} {rate:.0} {:.2}", rate / yardstick);
+    });
+    println!("{name} {best:.0} {:.2}", best / bare);
 }
 
 fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
@@ -79,7 +77,7 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
         yardstick(&actions);
         STEPS
     };
-    report(name, compare(ours, bare));
+    compare(name, ours, bare);
 }
 
 fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) {
@@ -101,7 +99,7 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) {
         for (fma, flavour) in [(true, ""), (false, "_nofma")] {
             let name = format!("{name}{flavour}");
             match Lanes::new(fma) {
-                Some(mut bare) => report(&name, compare(&mut ours, || bare.run())),
+                Some(mut bare) => compare(&name, &mut ours, || bare.run()),
                 None => println!("{name} has no yardstick, which needs AVX2 and FMA"),
             }
         }
@@ -114,17 +112,17 @@ fn versus<A: Arithmetic, T: Task>(
     mut ours: Play<A, T>,
     mut other: Play<impl Arithmetic>,
 ) {
-    let rates = compare(
+    compare(
+        name,
         || (0..2000).map(|_| ours.play(true)).sum(),
         || (0..2000).map(|_| other.play(true)).sum(),
     );
-    report(&format!("batch_{name}"), rates);
 }
 
 /// Steps on all cores; the ratio is to the same steps on one core.
 fn threads(len: usize) {
     let (mut many, mut one) = (Play::<Fast>::new(len), Play::<Fast>::new(len));
-    let rates = compare(|| many.step(false, true), || one.step(false, false));
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    report(&format!("batch_fast_{len}_threads_{threads}"), rates);
+    let name = format!("batch_fast_{len}_threads_{threads}");
+    compare(&name, || many.step(false, true), || one.step(false, false));
 }

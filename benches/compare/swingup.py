@@ -30,11 +30,10 @@ states[:, 1:3] = rng.uniform(-np.pi, np.pi, (ENVS, 2))
 controls = np.ascontiguousarray(actions.transpose(1, 0, 2))
 data = [MjData(model)]
 envs = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=ENVS)
-envs.reset(seed=0)
 in_float64 = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=ENVS, float64=True)
-in_float64.reset(seed=0)
 env = acrobot_rs.AcrobotSwingupEnv()
-env.reset(seed=0)
+for each in envs, in_float64, env:
+    each.reset(seed=0)
 pool = envpool.make_gymnasium("AcrobotSwingup-v1", num_envs=256, num_threads=1)
 pool.reset()
 playground = registry.load("AcrobotSwingup", config_overrides={"impl": "jax"})

@@ -16,10 +16,8 @@ use rlevo_environments::classic::acrobot::{Acrobot as RlevoAcrobot, AcrobotActio
 /// Plays a number of steps and returns how many episodes ended.
 type Implementation = Box<dyn FnMut(usize) -> usize>;
 
-type New = fn() -> Implementation;
-
 /// The name of each implementation, its package, and how to make it.
-const IMPLEMENTATIONS: [(&str, &str, New); 3] = [
+const IMPLEMENTATIONS: [(&str, &str, fn() -> Implementation); 3] = [
     ("fast", "acrobot", fast),
     ("batch", "acrobot", batch),
     ("rlevo", "rlevo-environments", rlevo),

@@ -1,12 +1,11 @@
-//! Weights as little-endian bytes: magic, version, size, number of tilings, weights, checksum.
+//! Weights as little-endian bytes: magic with version, size, number of tilings, weights, checksum.
 
 use core::fmt;
 
 use crate::QLambda;
 
-const MAGIC: [u8; 4] = *b"TILE";
-/// Other tiles need another version.
-const VERSION: u32 = 1;
+/// The name and the version. Other tiles need another version.
+const MAGIC: [u8; 8] = *b"TILE\x01\0\0\0";
 /// The words before the weights.
 const HEADER: usize = 4;
 
@@ -16,7 +15,7 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
 
     /// The weights as [`QLambda::BYTES`] bytes, from the first to the last.
     pub fn save(&self) -> impl Iterator<Item = u8> + '_ {
-        let header = [VERSION, Self::BYTES as u32, T as u32];
+        let header = [Self::BYTES as u32, T as u32];
         let words = MAGIC.into_iter().chain(header.into_iter().flat_map(u32::to_le_bytes));
         let weights = self.weights.as_flattened().iter().flat_map(|w| w.to_le_bytes());
         let body = words.chain(weights);
@@ -32,11 +31,8 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), LoadError> {
         let (words, _) = bytes.as_chunks();
         let word = |at: usize| words.get(at).copied().map_or(0, u32::from_le_bytes);
-        if words.first() != Some(&MAGIC) {
+        if !bytes.starts_with(&MAGIC) {
             return Err(LoadError::Magic);
-        }
-        if words.len() > 1 && word(1) != VERSION {
-            return Err(LoadError::Version(word(1)));
         }
         if bytes.len() != Self::BYTES {
             return Err(LoadError::Size { found: bytes.len(), expected: Self::BYTES });
@@ -67,14 +63,12 @@ fn fnv(hash: u32, byte: u8) -> u32 {
     (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
 }
 
-/// Why bytes were rejected as weights. The learner is unchanged.
+/// Why bytes were rejected as weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The bytes do not begin as saved weights do.
+    /// The bytes do not begin as weights of this version do.
     Magic,
-    /// Another version of the format: this one.
-    Version(u32),
     /// Too few or too many bytes.
     Size {
         /// The bytes given.
@@ -93,10 +87,7 @@ pub enum LoadError {
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Magic => write!(f, "weights must begin with the bytes TILE"),
-            Self::Version(found) => {
-                write!(f, "weights must have version {VERSION}, got {found}")
-            }
+            Self::Magic => write!(f, "weights must begin with the bytes TILE and version 1"),
             Self::Size { found, expected } => {
                 write!(f, "weights must have {expected} bytes, got {found}")
             }

@@ -10,6 +10,11 @@ fn settings(params: Params) -> Settings {
     Settings { params: params.cast(), limit: 6.0, counts: [4096, 4096], ticks: 5 }
 }
 
+/// The settings of a machine whose parameters are known.
+fn known() -> Settings {
+    settings(Machine::<Damped<Portable>>::new(1).unwrap().params())
+}
+
 /// Controls a machine by a model for 5 s, and for 5 s after a push, with slices of so many ticks.
 /// Returns the largest lean in the last second before the push and before the end, rad, the largest
 /// torque, and the controller.
@@ -69,8 +74,7 @@ fn slow_planning_is_no_error() {
 
 #[test]
 fn without_plans_there_is_no_torque() {
-    let params = Machine::<Damped<Portable>>::new(1).unwrap().params();
-    let mut controller = Controller::<100>::new(settings(params)).unwrap();
+    let mut controller = Controller::<100>::new(known()).unwrap();
     for counts in [[0, 0], [i32::MIN, i32::MAX], [4096, -4096]] {
         assert_eq!(controller.tick(counts).unwrap(), 0.0);
     }
@@ -79,9 +83,8 @@ fn without_plans_there_is_no_torque() {
 /// From exactly hanging left and right are alike.
 #[test]
 fn zeroed_encoders_do_not_stop_it() {
-    let settings = settings(Machine::<Damped<Portable>>::new(1).unwrap().params());
-    let mut controller = Controller::<100>::new(settings).unwrap();
-    let mut replanner = Replanner::new(settings).unwrap();
+    let mut controller = Controller::<100>::new(known()).unwrap();
+    let mut replanner = Replanner::new(known()).unwrap();
     let mut most = 0.0_f32;
     for _ in 0..100 {
         most = most.max(controller.tick([0, 0]).unwrap().abs());
@@ -93,15 +96,17 @@ fn zeroed_encoders_do_not_stop_it() {
 
 #[test]
 fn bad_settings_are_rejected() {
-    let good = settings(Machine::<Damped<Portable>>::new(1).unwrap().params());
-    let error = |settings| Controller::<100>::new(settings).unwrap_err().to_string();
-    let counts = error(Settings { counts: [4096, 0], ..good });
-    assert_eq!(counts, "counts must be finite and above 0 for a turn, got 0");
-    let torque = error(Settings { limit: 0.0, ..good });
-    assert_eq!(torque, "limit must be finite and above 0 N m, got 0");
-    let ticks = error(Settings { ticks: 0, ..good });
-    assert_eq!(ticks, "ticks must be finite and above 0 for a decision, got 0");
+    let good = known();
     let params = Params { mass1: -1.0, ..good.params };
-    let mass = error(Settings { params, ..good });
-    assert_eq!(mass, "mass1 must be finite and above 0 kg, got -1");
+    for (bad, rule) in [
+        (
+            Settings { counts: [4096, 0], ..good },
+            "counts must be finite and above 0 for a turn, got 0",
+        ),
+        (Settings { limit: 0.0, ..good }, "limit must be finite and above 0 N m, got 0"),
+        (Settings { ticks: 0, ..good }, "ticks must be finite and above 0 for a decision, got 0"),
+        (Settings { params, ..good }, "mass1 must be finite and above 0 kg, got -1"),
+    ] {
+        assert_eq!(Controller::<100>::new(bad).unwrap_err().to_string(), rule);
+    }
 }

@@ -86,10 +86,7 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
         let Some((content, checksum)) = file.split_last_chunk() else {
             return Err(PolicyError::MAGIC);
         };
-        let Some((head, rest)) = content.split_first_chunk() else {
-            return Err(PolicyError::MAGIC);
-        };
-        let &[b'M', b'L', b'P', b'1', count, kind, low, high, ref limit @ ..] = head as &[u8; 12]
+        let &[b'M', b'L', b'P', b'1', count, kind, low, high, a, b, c, d, ref rest @ ..] = content
         else {
             return Err(PolicyError::MAGIC);
         };
@@ -126,7 +123,7 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
             }
             rest = tail;
         }
-        let limit = f32::from_le_bytes(*limit);
+        let limit = f32::from_le_bytes([a, b, c, d]);
         let torque_limit = match (kind, inputs) {
             (0, 3) => None,
             (1, 1) if limit > 0.0 && limit.is_finite() => Some(limit),
@@ -150,9 +147,8 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
                 _ => Action::Zero,
             };
         }
-        let actions = Action::ALL;
         let mut best = (Action::Negative, f32::NEG_INFINITY);
-        for (action, &score) in actions.into_iter().zip(&scores) {
+        for (action, &score) in Action::ALL.into_iter().zip(&scores) {
             if score > best.1 {
                 best = (action, score);
             }

@@ -28,12 +28,12 @@ pub fn load<const S: usize, const T: usize>(
 ) -> anyhow::Result<()> {
     /// A file can be endless, and no weights have so many bytes.
     const MOST: u64 = 1 << 17;
-    let named = || path.display().to_string();
-    let mut bytes = Vec::new();
-    let file = File::open(path).with_context(named)?;
-    let read = file.take(MOST).read_to_end(&mut bytes);
-    read.with_context(named)?;
-    learner.load(&bytes).with_context(named)
+    let mut load = || -> anyhow::Result<()> {
+        let mut bytes = Vec::new();
+        File::open(path)?.take(MOST).read_to_end(&mut bytes)?;
+        Ok(learner.load(&bytes)?)
+    };
+    load().with_context(|| path.display().to_string())
 }
 
 /// Learns for a budget. Returns the return of each episode.

@@ -106,64 +106,52 @@ fn quartic(mut factors: &[f64], pairs: &[TaylorModel; 10]) -> TaylorModel {
     TaylorModel::sum(terms.iter().map(|term| (1.0, term)))
 }
 
-/// The numbers of the statement.
-struct Bound {
-    /// P of the target.
-    at_target: f64,
-    /// The largest increase of P by a step.
-    unit: f64,
+/// Those of the torques for which the statement, with `at_target` and `unit`, is not certain in a
+/// box.
+fn open([at_target, unit]: [f64; 2], y: Space, torques: &[f64]) -> Vec<f64> {
+    let [energy, height, before] = energy_height_progress(y);
+    if energy.low() > MOST + SLACK
+        || height.low() > 1.0 + SLACK
+        || before.low() > at_target - unit + SLACK
+    {
+        return Vec::new();
+    }
+    let is_open = |&torque: &f64| {
+        let [energy, height, after] = energy_height_progress(step(y, torque));
+        let is_certain = energy.high() < MOST - SLACK
+            && height.high() < 1.0 - SLACK
+            && (after - before).high() < unit - SLACK;
+        !is_certain
+    };
+    torques.iter().copied().filter(is_open).collect()
 }
 
-const BOUND: Bound = Bound { at_target: AT_TARGET, unit: UNIT };
-
-impl Bound {
-    /// Those of the torques for which the statement is not certain in a box.
-    fn open(&self, y: Space, torques: &[f64]) -> Vec<f64> {
-        let [energy, height, before] = energy_height_progress(y);
-        if energy.low() > MOST + SLACK
-            || height.low() > 1.0 + SLACK
-            || before.low() > self.at_target - self.unit + SLACK
-        {
-            return Vec::new();
-        }
-        let is_open = |&torque: &f64| {
-            let [energy, height, after] = energy_height_progress(step(y, torque));
-            let is_certain = energy.high() < MOST - SLACK
-                && height.high() < 1.0 - SLACK
-                && (after - before).high() < self.unit - SLACK;
-            !is_certain
-        };
-        torques.iter().copied().filter(is_open).collect()
+/// Proves the statement in a box, given its centre and its radius in each dimension. Halves the box
+/// where the statement is not certain, at most `halvings` times. Returns the number of boxes.
+fn prove_in(
+    bound: [f64; 2],
+    centre: [f64; 4],
+    mut radius: [f64; 4],
+    torques: &[f64],
+    halvings: u32,
+) -> anyhow::Result<u64> {
+    let open = open(bound, TaylorModel::coordinates(centre, radius), torques);
+    if open.is_empty() {
+        return Ok(1);
     }
-
-    /// Proves the statement in a box, given its centre and its radius in each dimension. Halves the
-    /// box where the statement is not certain, at most `halvings` times. Returns the number of
-    /// boxes.
-    fn prove_in(
-        &self,
-        centre: [f64; 4],
-        mut radius: [f64; 4],
-        torques: &[f64],
-        halvings: u32,
-    ) -> anyhow::Result<u64> {
-        let open = self.open(TaylorModel::coordinates(centre, radius), torques);
-        if open.is_empty() {
-            return Ok(1);
-        }
-        if halvings == 0 {
-            bail!("not proved near {centre:?} with {open:?} N m");
-        }
-        // An angle of 1 rad changes P about as much as 3 rad/s.
-        let size = |&d: &usize| radius[d] * [3.0, 3.0, 1.0, 1.0][d];
-        let widest = (0..4).max_by(|a, b| size(a).total_cmp(&size(b)));
-        let widest = widest.expect("four dimensions");
-        radius[widest] /= 2.0;
-        [-1.0, 1.0].into_iter().try_fold(0, |boxes, sign| {
-            let mut centre = centre;
-            centre[widest] += sign * radius[widest];
-            Ok(boxes + self.prove_in(centre, radius, &open, halvings - 1)?)
-        })
+    if halvings == 0 {
+        bail!("not proved near {centre:?} with {open:?} N m");
     }
+    // An angle of 1 rad changes P about as much as 3 rad/s.
+    let size = |&d: &usize| radius[d] * [3.0, 3.0, 1.0, 1.0][d];
+    let widest = (0..4).max_by(|a, b| size(a).total_cmp(&size(b)));
+    let widest = widest.expect("four dimensions");
+    radius[widest] /= 2.0;
+    [-1.0, 1.0].into_iter().try_fold(0, |boxes, sign| {
+        let mut centre = centre;
+        centre[widest] += sign * radius[widest];
+        Ok(boxes + prove_in(bound, centre, radius, &open, halvings - 1)?)
+    })
 }
 
 pub fn prove() -> anyhow::Result<()> {
@@ -178,7 +166,7 @@ pub fn prove() -> anyhow::Result<()> {
             let i = part / PARTS.pow(d as u32) % PARTS;
             STATES[d][0] + f64::from(2 * i + 1) * radius[d]
         });
-        BOUND.prove_in(centre, radius, &TORQUES, HALVINGS)
+        prove_in([AT_TARGET, UNIT], centre, radius, &TORQUES, HALVINGS)
     });
     println!(
         "proved in {} million boxes: from hanging at rest the goal is at least {} steps away",
@@ -195,7 +183,7 @@ pub fn least_steps(state: State) -> Option<u32> {
     let y = [theta1, theta1 + theta2, dtheta1, dtheta1 + dtheta2].map(TaylorModel::from);
     let [energy, height, progress] = energy_height_progress(y);
     let is_outside = energy.high() < MOST && height.high() < 1.0 - SLACK;
-    let steps = (BOUND.at_target - SLACK - progress.high()) / BOUND.unit;
+    let steps = (AT_TARGET - SLACK - progress.high()) / UNIT;
     is_outside.then_some(steps.ceil() as u32)
 }
 
@@ -286,18 +274,18 @@ mod tests {
         assert_eq!([goal, fast].map(|y| least_steps(y.into())), [None; 2]);
     }
 
-    const LONGEST: [f64; 4] = [-0.31028, 1.05353, 0.80987, 6.04149];
-    const LATEST: [f64; 4] = [-0.15488, 0.80654, -0.93411, 6.67199];
-    /// Steps from here reach the target by their height alone.
-    const HIGHEST: [f64; 4] = [-1.40517, 3.00841, -1.44586, 0.76542];
-
     /// Near the states that are nearest to a contradiction, of ten million and of climbs from them.
     #[test]
     fn bounds_that_are_too_tight_are_not_proved() {
         let proves = |at_target, unit| {
-            let bound = Bound { at_target, unit };
-            let near = |y| bound.prove_in(y, [1.0 / 64.0; 4], &TORQUES, 30).is_ok();
-            [LONGEST, LATEST, HIGHEST].map(near)
+            let near = |y| prove_in([at_target, unit], y, [1.0 / 64.0; 4], &TORQUES, 30).is_ok();
+            // Steps from the last one reach the target by their height alone.
+            [
+                [-0.31028, 1.05353, 0.80987, 6.04149],
+                [-0.15488, 0.80654, -0.93411, 6.67199],
+                [-1.40517, 3.00841, -1.44586, 0.76542],
+            ]
+            .map(near)
         };
         assert_eq!(proves(AT_TARGET, UNIT), [true, true, true]);
         assert_eq!(proves(AT_TARGET, UNIT - 0.015), [false, true, true]);

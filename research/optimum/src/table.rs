@@ -19,12 +19,8 @@ pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
     row("random", mean(|_| Action::sample(&mut actions)));
     row("torque against θ̇1", mean(|state| bang_bang(state.dtheta1)));
 
-    let mut memory = Memory16::EMPTY;
-    let learner = learnt(&mut memory);
-    row("learnt, 16 KiB", mean(|state| learner.greedy(state)));
-    let mut memory = Memory64::EMPTY;
-    let learner = learnt(&mut memory);
-    row("learnt, 64 KiB", mean(|state| learner.greedy(state)));
+    row("learnt, 16 KiB", learnt(Memory16::EMPTY));
+    row("learnt, 64 KiB", learnt(Memory64::EMPTY));
 
     let steps: usize = best.iter().map(Vec::len).sum();
     row("best known", mean_return(steps as f64));
@@ -36,12 +32,10 @@ pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn learnt<const S: usize, const T: usize, const N: usize>(
-    memory: &mut Memory<S, T, N>,
-) -> QLambda<'_, S, T> {
-    let mut learner = QLambda::new(BUDGET, memory);
+fn learnt<const S: usize, const T: usize, const N: usize>(mut memory: Memory<S, T, N>) -> f64 {
+    let mut learner = QLambda::new(BUDGET, &mut memory);
     train(&mut learner, BUDGET, SEED.into());
-    learner
+    mean(|state| learner.greedy(state))
 }
 
 /// The mean return of a policy in `Fast`, with at most 500 steps per episode.

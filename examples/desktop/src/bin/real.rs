@@ -6,18 +6,15 @@
 //! cargo run --release -p desktop --bin real -- --first 20    # other seeds
 //! ```
 //!
-//! After 10 s a push changes both velocities by up to 1 rad/s, and after 20 s by up to 6 rad/s. The
-//! table has how many acrobots are upright in the last second before each push and before the end,
-//! and the times that they needed.
+//! docs/real.md has the table that it prints, and explains it.
 
 use std::f64::consts::TAU;
 
-use acrobot::Params;
-use acrobot::Portable;
 use acrobot::arithmetic::Damped;
 use acrobot::control::{ControlError, Evidence, Sample};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Joints;
+use acrobot::{Params, Portable};
 use clap::Parser;
 use mpc::{Controller, Replanner, Settings};
 use rayon::prelude::*;
@@ -26,10 +23,10 @@ type Machine = mpc::Machine<Damped<Portable>>;
 
 /// Ticks of 2 ms between two pushes.
 const TICKS: u32 = 5000;
-/// An acrobot is upright within these angles, rad, and for so many ticks.
+/// An acrobot is upright within these angles, rad, for so many ticks before a push and the end.
 const UPRIGHT: f64 = 0.1;
 const HELD: u32 = 500;
-/// What the pushes change, rad/s.
+/// How much the pushes change both velocities at most, rad/s.
 const PUSHES: [f64; 3] = [1.0, 6.0, 0.0];
 
 /// Rehearses the control of a real acrobot.
@@ -51,10 +48,6 @@ type Model = fn(Params, u64) -> Result<Params, ControlError>;
 
 /// The motion of a machine between pushes: seconds until upright, if it then stays there.
 type Motion = [Option<f64>; PUSHES.len()];
-
-fn without_friction(truth: Params, _: u64) -> Result<Params, ControlError> {
-    Ok(Params { friction: Joints::default(), coulomb: Joints::default(), ..truth })
-}
 
 /// Shakes a machine for 10 s with up to 3 N m, and identifies it from what the encoders counted.
 fn identified(truth: Params, seed: u64) -> Result<Params, ControlError> {
@@ -113,7 +106,9 @@ fn main() -> anyhow::Result<()> {
     let models: [(&str, Model); 3] = [
         ("the true one", |truth, _| Ok(truth)),
         ("identified", identified),
-        ("without friction", without_friction),
+        ("without friction", |truth, _| {
+            Ok(Params { friction: Joints::default(), coulomb: Joints::default(), ..truth })
+        }),
     ];
     for (name, model) in models {
         let seeds = (first..first + count).into_par_iter();

@@ -1,5 +1,4 @@
-//! Q(λ) with replay learns to swing up within seconds. The greedy policy is then compared with two
-//! policies that do not learn.
+//! Q(λ) with replay learns to swing up within seconds.
 //!
 //! ```text
 //! cargo run --release -p desktop --bin swing_up -- --steps 1000000 --save weights.bin
@@ -10,9 +9,6 @@
 //! first n ≥ 100 for which the mean return of episodes n − 99 to n is −100 or better. R and S are
 //! the mean and standard deviation of 1,000 greedy episodes from initial states that it was not
 //! trained on, and K of these missed the goal. The time of learning goes to stderr.
-//!
-//! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into
-//! torque against θ̇1. This is the baseline.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -50,15 +46,8 @@ struct Options {
     quiet: bool,
 }
 
-impl Options {
-    fn budget(&self) -> Budget {
-        self.steps.map_or(Budget::Episodes(self.episodes), Budget::Steps)
-    }
-}
-
-/// The episodes of an evaluation.
+/// The episodes of an evaluation, and of a mean while it learns.
 const EVALUATION: u32 = 1000;
-/// The episodes of a mean while it learns.
 const LATEST: usize = 100;
 
 fn main() -> anyhow::Result<()> {
@@ -74,13 +63,14 @@ fn run<const S: usize, const T: usize, const N: usize>(
     options: &Options,
     mut memory: Memory<S, T, N>,
 ) -> anyhow::Result<()> {
-    let mut learner = QLambda::new(options.budget(), &mut memory);
+    let budget = options.steps.map_or(Budget::Episodes(options.episodes), Budget::Steps);
+    let mut learner = QLambda::new(budget, &mut memory);
     if let Some(path) = &options.load {
         load(&mut learner, path)?;
     }
 
     let start = Instant::now();
-    let returns = train(&mut learner, options.budget(), options.seed.clone());
+    let returns = train(&mut learner, budget, options.seed.clone());
     let seconds = start.elapsed().as_secs_f32();
     if let Some(path) = &options.save {
         let bytes: Vec<u8> = learner.save().collect();
@@ -108,16 +98,8 @@ fn run<const S: usize, const T: usize, const N: usize>(
     row("learnt", learnt);
     row("torque against θ̇1", evaluate(seed, EVALUATION, |state| bang_bang(state.dtheta1)));
     row("random", evaluate(seed, EVALUATION, |_| Action::sample(&mut actions)));
-    println!();
-    draw(&learner, options)
-}
 
-/// Draws a greedy episode.
-fn draw<const S: usize, const T: usize>(
-    learner: &QLambda<S, T>,
-    options: &Options,
-) -> anyhow::Result<()> {
-    let mut env = evaluation(&options.seed);
+    let mut env = evaluation(seed);
     let mut states = Vec::new();
     play(&mut env, |state| {
         states.push(state.cast());
@@ -125,6 +107,6 @@ fn draw<const S: usize, const T: usize>(
     });
     states.push(env.state().cast());
     write(Path::new("swing_up.svg"), animation::svg(&states, animation::DELAY, 0..0))?;
-    println!("swing_up.svg: a greedy episode, {} steps", env.elapsed_steps());
+    println!("\nswing_up.svg: a greedy episode, {} steps", env.elapsed_steps());
     Ok(())
 }

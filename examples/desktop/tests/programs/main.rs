@@ -45,12 +45,8 @@ impl Folder {
         assert!(errors.contains(reason), "{line}: {errors}");
     }
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-
     fn read(&self, name: &str) -> Vec<u8> {
-        fs::read(self.path(name)).unwrap()
+        fs::read(self.0.join(name)).unwrap()
     }
 }
 

@@ -6,9 +6,7 @@
 //! cargo run --release -p desktop --bin stay_up -- --replan     # both in real time
 //! ```
 //!
-//! The planner plans before the acrobot moves. Prints the mean return of
-//! episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or
-//! how many of Gymnasium's initial states end upright.
+//! The initial states are those of `Acrobot::new(seed)` for seeds from 0.
 
 mod replan;
 mod search;
@@ -146,9 +144,9 @@ fn main() -> anyhow::Result<()> {
         return Ok(());
     }
     let totals = episodes.iter().map(|episode| episode.total);
-    let average = |numbers: &mut dyn Iterator<Item = f64>| numbers.sum::<f64>() / f64::from(count);
-    let mean = average(&mut totals.clone());
-    let sd = average(&mut totals.clone().map(|x| (x - mean) * (x - mean))).sqrt();
+    let mean = totals.clone().sum::<f64>() / f64::from(count);
+    let squares = totals.clone().map(|x| (x - mean) * (x - mean));
+    let sd = (squares.sum::<f64>() / f64::from(count)).sqrt();
     let worst = totals.fold(f64::INFINITY, f64::min);
     let held = episodes.iter().filter(|episode| episode.holds(1000)).count();
     println!(

@@ -33,7 +33,6 @@ const TRIES: usize = 2;
 
 pub type Plan = Vec<Knot<f32>>;
 
-/// The search for the best plan from a state.
 #[derive(Clone)]
 pub struct Search {
     pub acrobot: Acrobot<Damped<Fast>, Swingup>,
