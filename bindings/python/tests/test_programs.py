@@ -1,7 +1,4 @@
-"""Other people's programs find in our environments what they read of Gymnasium's.
-
-`tests/clients/python` runs such programs.
-"""
+"""Other people's programs find in our environments what they read of Gymnasium's."""
 
 import gymnasium
 import numpy as np
