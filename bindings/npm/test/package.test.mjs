@@ -215,25 +215,3 @@ test("a picture is Gymnasium's", async () => {
     assert.ok(close > 0.99, `${close} of the colors are close`);
   });
 });
-
-test("one's own module, as docs/wasm.md describes it, has 10 KB and draws episodes", async () => {
-  const [manifest] = blocks("docs/wasm.md", "toml");
-  const [library] = blocks("docs/wasm.md", "rust");
-  const [, html] = blocks("docs/wasm.md", "html");
-  run("cargo", ["new", "--quiet", "--vcs", "none", "--lib", "my_module"]);
-  const path = join(folder, "my_module");
-  const version = /"0\.1".*/;
-  assert.match(manifest, version);
-  const [head] = readFileSync(join(path, "Cargo.toml"), "utf8").split("[dependencies]");
-  const dependency = `{ path = ${JSON.stringify(root)} }`;
-  writeFileSync(join(path, "Cargo.toml"), head + manifest.replace(version, dependency));
-  writeFileSync(join(path, "src/lib.rs"), library);
-  const target = join(here, "target/own");
-  const wasm = "wasm32-unknown-unknown";
-  const args = ["build", "--quiet", "--release", "--target", wasm, "--target-dir", target];
-  run("cargo", args, { cwd: path });
-  const module = readFileSync(join(target, wasm, "release/my_module.wasm"));
-  assert.equal(Math.round(module.length / 1000), 10);
-  write("my_module.wasm", module);
-  await open(html, moves);
-});
