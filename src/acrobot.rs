@@ -44,18 +44,8 @@ impl<O> Step<O> {
 ///
 /// `A` is the [arithmetic](crate::arithmetic), which determines every bit. `R` is the generator for
 /// initial states and torque noise. The state [is always
-/// finite](Pendulum#results-that-are-not-finite). [`TimeLimit`](crate::TimeLimit) adds truncation.
-///
-/// ```
-/// use acrobot::{Acrobot, Action, Fast};
-///
-/// let mut acrobot = Acrobot::<Fast>::new(42); // the state after Gymnasium's reset(seed=42)
-/// let mut steps = 0;
-/// while !acrobot.step(Action::Positive).done() && steps < 500 {
-///     steps += 1;
-/// }
-/// acrobot.reset(); // the next initial state of the same stream
-/// ```
+/// finite](Pendulum#results-that-are-not-finite). [`TimeLimit`](crate::TimeLimit) adds truncation:
+/// [an example](crate).
 ///
 /// # Snapshots
 ///
