@@ -8,9 +8,7 @@ use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::Pcg64;
 use crate::physics::{Params, Pendulum, State, check_torque, default_model};
-use crate::task::{
-    Draws, Gymnasium, Observation, Of, ResetBounds, ResetOptions, Seen, Task, episode,
-};
+use crate::task::{Draws, Gymnasium, Observation, ResetBounds, ResetOptions, Seen, Task, episode};
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
@@ -152,7 +150,7 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
     /// adapter](crate::guide::rust#generators).
     #[must_use]
     pub fn with_rng(mut rng: R) -> Self {
-        const { default_model::<A, Of<T>>() };
+        const { default_model::<A, T>() };
         let state = T::DEFAULT.draw(T::RESET_BOUNDS, &mut rng).cast();
         // Built field by field: see `Params::default`.
         let params = T::PARAMS.cast();
@@ -236,7 +234,7 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
     /// [`static`](crate::guide::embedded#a-first-program).
     #[must_use]
     pub const fn hanging(rng: R) -> Self {
-        let model = const { default_model::<A, Of<T>>() };
+        let model = const { default_model::<A, T>() };
         Self::from_pendulum(Pendulum::from_model(model, [A::Scalar::ZERO; 4]), rng)
     }
 

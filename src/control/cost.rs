@@ -6,17 +6,8 @@ use crate::physics::{Params, positions};
 
 /// The weights of what a plan costs: the sum of all terms, over all its steps, and of its end. A
 /// larger weight makes its term smaller, at the expense of the others: [a table of what each
-/// does](crate::guide::control#what-a-plan-costs).
-///
-/// ```
-/// use acrobot::control::{Cost, Planner};
-/// use acrobot::{Fast, Params};
-///
-/// let params = Params { dt: 0.01, ..Params::SWINGUP };
-/// // Spares the motor: less energy, and no jumps of the torque.
-/// let cost = Cost { power: 0.5, torque_change: 1.0, ..Cost::new(&params) };
-/// let planner = Planner::<Fast>::with_cost(params, 2.0, cost);
-/// ```
+/// does](crate::guide::control#what-a-plan-costs). `Cost { power: 0.5, torque_change: 1.0,
+/// ..Cost::new(&params) }` spares the motor: less energy, and no jumps of the torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)] // for bindings/c

@@ -17,6 +17,15 @@ pub struct LinearModel<S = f64> {
     pub b: [S; 4],
 }
 
+impl<S: Real> LinearModel<S> {
+    /// The model, if all its elements are finite.
+    pub(super) fn finite(self) -> Result<Self, ControlError> {
+        check_finite("a", self.a.as_flattened())?;
+        check_finite("b", &self.b)?;
+        Ok(self)
+    }
+}
+
 /// Linearizes the equations of motion about the pendulum's state and a torque, N m: A and B of
 /// ẋ = A x + B u, exact up to rounding.
 ///
@@ -35,7 +44,7 @@ pub fn linearize<A: Arithmetic>(
     let y = pendulum.state().into();
     let (_, [by_state @ .., by_torque]) =
         partials::<A>(pendulum.model(), y, pendulum.sin_cos(), torque);
-    let model = LinearModel {
+    LinearModel {
         a: [
             [zero, zero, one, zero],
             [zero, zero, zero, one],
@@ -43,10 +52,8 @@ pub fn linearize<A: Arithmetic>(
             by_state.map(|[_, ddtheta2]| ddtheta2),
         ],
         b: [zero, zero, by_torque[0], by_torque[1]],
-    };
-    check_finite("a", model.a.as_flattened())?;
-    check_finite("b", &model.b)?;
-    Ok(model)
+    }
+    .finite()
 }
 
 /// M of the absolute angles α = θ1 and β = θ1 + θ2, with the rows \[upper, between\] and
@@ -91,10 +98,9 @@ impl<S: Real> MassMatrix<S> {
 
 /// \[θ̈1, θ̈2\], and their derivatives by θ1, θ2, θ̇1, θ̇2 and the torque.
 ///
-/// The equations M q̈ = f for the absolute angles α = θ1 and β = θ1 + θ2 are those of
-/// docs/equations.md: M has the rows \[upper, c\] and \[c, link2\], with c = coupling cos θ2. The
-/// derivative by p is M⁻¹ (∂f/∂p − ∂M/∂p q̈). Nothing cancels in the determinant, where Gymnasium's
-/// form loses digits if one link is much heavier than the other.
+/// The equations M q̈ = f for the absolute angles are those of docs/equations.md. The derivative by
+/// p is M⁻¹ (∂f/∂p − ∂M/∂p q̈). Nothing cancels in the determinant, where Gymnasium's form loses
+/// digits if one link is much heavier than the other.
 #[inline(always)]
 pub(super) fn partials<A: Arithmetic>(
     model: &Model<A::Scalar>,

@@ -3,6 +3,8 @@
 use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+use sealed::Sealed as _;
+
 /// A scalar: `f32` or `f64`.
 ///
 /// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so results are

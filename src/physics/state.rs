@@ -54,16 +54,6 @@ impl<S: Real> State<S> {
         <[S; 4]>::from(self).map(|x| T::from_f64(x.to_f64())).into()
     }
 
-    /// The name, value and unit of each number.
-    pub(crate) const fn fields(&self) -> [(&'static str, S, &'static str); 4] {
-        [
-            ("theta1", self.theta1, "rad"),
-            ("theta2", self.theta2, "rad"),
-            ("dtheta1", self.dtheta1, "rad/s"),
-            ("dtheta2", self.dtheta2, "rad/s"),
-        ]
-    }
-
     /// Checks that all four numbers are finite.
     ///
     /// # Errors
@@ -78,7 +68,12 @@ for_f32_and_f64! {
     impl State<S> {
         /// [`State::validate`], also in a `const`, where neither `?` nor `for` is allowed.
         pub(crate) const fn check(&self) -> Result<(), Error> {
-            let mut fields: &[_] = &self.fields();
+            let mut fields: &[_] = &[
+                ("theta1", self.theta1, "rad"),
+                ("theta2", self.theta2, "rad"),
+                ("dtheta1", self.dtheta1, "rad/s"),
+                ("dtheta2", self.dtheta2, "rad/s"),
+            ];
             while let [(name, value, unit), rest @ ..] = fields {
                 if let Err(error) = Range::Finite.check(name, *value as f64, unit) {
                     return Err(error);
