@@ -257,7 +257,6 @@ impl<A: Arithmetic, T: Task> Acrobot<A, T> {
 
 #[cfg(feature = "defmt")]
 impl<A: Arithmetic, T: Task, R: defmt::Format> defmt::Format for Acrobot<A, T, R> {
-    /// Parameters, state and generator.
     fn format(&self, f: defmt::Formatter<'_>) {
         let (params, state, rng) = (self.params(), self.state(), &self.rng);
         defmt::write!(f, "Acrobot {{ params: {}, state: {}, rng: {} }}", params, state, rng);

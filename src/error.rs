@@ -1,4 +1,4 @@
-//! The error type: why an input was rejected.
+//! The error type.
 
 use core::fmt;
 

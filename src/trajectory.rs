@@ -176,7 +176,6 @@ impl<S: Real, const N: usize> Default for Trajectory<S, N> {
 
 #[cfg(feature = "defmt")]
 impl<S: Real + defmt::Format, const N: usize> defmt::Format for Trajectory<S, N> {
-    /// All transitions, oldest first.
     fn format(&self, f: defmt::Formatter<'_>) {
         defmt::write!(f, "Trajectory [");
         for transition in self.iter() {

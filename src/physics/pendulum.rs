@@ -295,7 +295,6 @@ impl<A: Arithmetic> PartialEq for Pendulum<A> {
 
 #[cfg(feature = "defmt")]
 impl<A: Arithmetic> defmt::Format for Pendulum<A> {
-    /// Parameters and state.
     fn format(&self, f: defmt::Formatter<'_>) {
         let (params, state) = (self.params(), self.state());
         defmt::write!(f, "Pendulum {{ params: {}, state: {} }}", params, state);

@@ -4,7 +4,7 @@ use crate::error::{Error, Range};
 use crate::math::Real;
 
 /// The state of an acrobot: two angles and their velocities, in the order of Gymnasium's
-/// `env.unwrapped.state`.
+/// `env.unwrapped.state`, also as an array.
 ///
 /// After a step the angles are within \[−π, π\] and the velocities within their bounds. Before, a
 /// state may be outside.
@@ -24,7 +24,6 @@ pub struct State<S = f64> {
 }
 
 impl<S> From<[S; 4]> for State<S> {
-    /// From \[θ1, θ2, θ̇1, θ̇2\].
     #[inline]
     fn from([theta1, theta2, dtheta1, dtheta2]: [S; 4]) -> Self {
         Self { theta1, theta2, dtheta1, dtheta2 }
@@ -32,7 +31,6 @@ impl<S> From<[S; 4]> for State<S> {
 }
 
 impl<S> From<State<S>> for [S; 4] {
-    /// To \[θ1, θ2, θ̇1, θ̇2\].
     #[inline]
     fn from(state: State<S>) -> Self {
         [state.theta1, state.theta2, state.dtheta1, state.dtheta2]

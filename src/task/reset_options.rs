@@ -17,21 +17,18 @@ pub struct ResetOptions {
 }
 
 impl From<u64> for ResetOptions {
-    /// This seed, and the default bounds.
     fn from(seed: u64) -> Self {
         SeedSequence::new(seed).into()
     }
 }
 
 impl From<SeedSequence> for ResetOptions {
-    /// This seed, and the default bounds.
     fn from(seed: SeedSequence) -> Self {
         Self { seed: Some(seed), bounds: None }
     }
 }
 
 impl From<ResetBounds> for ResetOptions {
-    /// These bounds, and no seed.
     fn from(bounds: ResetBounds) -> Self {
         Self { seed: None, bounds: Some(bounds) }
     }

@@ -51,8 +51,7 @@ impl Task for Swingup {
         [1.0, 1.0, 1.0, 1.0, params.max_velocity1, params.max_velocity2]
     }
 
-    /// dm_control's `tolerance` of the tip's distance from the target: 0.1^(d²) at d metres from its
-    /// edge.
+    /// dm_control's `tolerance`: 0.1^(d²) at d metres beyond 0.2 m from the target.
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
