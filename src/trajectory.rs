@@ -23,11 +23,11 @@ pub struct Transition<S = f64> {
     pub state: State<S>,
     /// The requested torque, N m, without noise.
     pub torque: S,
-    /// −1, or 0 if `terminated`; of a swing-up from 0 to 1.
+    /// The task's reward.
     pub reward: f32,
     /// The state after the step.
     pub next: State<S>,
-    /// Whether `next` is a goal state.
+    /// Whether the task ended the episode.
     pub terminated: bool,
     /// Whether the time limit ended the episode.
     pub truncated: bool,

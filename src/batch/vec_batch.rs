@@ -104,11 +104,8 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
         }
     }
 
-    /// Calls [`Batch::step_into`] with actions or torques, and returns the results.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Batch::step_into`], and [`Error::OutOfMemory`].
+    /// Calls [`Batch::step_into`], with its errors and [`Error::OutOfMemory`], and returns the
+    /// results.
     pub fn step<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],

@@ -263,9 +263,7 @@ for_f32_and_f64! {
         /// let pendulum = Params::<f64>::DEFAULT.pendulum::<Host>(State::HANGING);
         /// ```
         ///
-        /// # Errors
-        ///
-        /// Those of [`Pendulum::new`].
+        /// Its errors are those of [`Pendulum::new`].
         pub const fn pendulum<A: Arithmetic<Scalar = S>>(
             self,
             state: State<S>,
