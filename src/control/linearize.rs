@@ -17,15 +17,6 @@ pub struct LinearModel<S = f64> {
     pub b: [S; 4],
 }
 
-impl<S: Real> LinearModel<S> {
-    /// The model, if all its elements are finite.
-    pub(super) fn finite(self) -> Result<Self, ControlError> {
-        check_finite("a", self.a.as_flattened())?;
-        check_finite("b", &self.b)?;
-        Ok(self)
-    }
-}
-
 /// Linearizes the equations of motion about the pendulum's state and a torque, N m: A and B of
 /// ẋ = A x + B u, exact up to rounding.
 ///
@@ -44,7 +35,7 @@ pub fn linearize<A: Arithmetic>(
     let y = pendulum.state().into();
     let (_, [by_state @ .., by_torque]) =
         partials::<A>(pendulum.model(), y, pendulum.sin_cos(), torque);
-    LinearModel {
+    let model = LinearModel {
         a: [
             [zero, zero, one, zero],
             [zero, zero, zero, one],
@@ -52,8 +43,10 @@ pub fn linearize<A: Arithmetic>(
             by_state.map(|[_, ddtheta2]| ddtheta2),
         ],
         b: [zero, zero, by_torque[0], by_torque[1]],
-    }
-    .finite()
+    };
+    check_finite("a", model.a.as_flattened())?;
+    check_finite("b", &model.b)?;
+    Ok(model)
 }
 
 /// M of the absolute angles α = θ1 and β = θ1 + θ2, with the rows \[upper, between\] and

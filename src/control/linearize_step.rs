@@ -2,7 +2,7 @@
 
 use super::error::ControlError;
 use super::linearize::{LinearModel, partials};
-use super::matrix::{dot, transpose};
+use super::matrix::{check_finite, dot, transpose};
 use crate::arithmetic::Arithmetic;
 use crate::math::sealed::Sealed as _;
 use crate::math::{Lanes, Numbers, Real, SinCos};
@@ -26,7 +26,10 @@ pub fn linearize_step<A: Arithmetic>(
     check_torque(torque)?;
     let y = pendulum.state().into();
     let [columns @ .., b] = derivatives_alone::<A>(pendulum.model(), y, pendulum.sin_cos(), torque);
-    LinearModel { a: transpose(&columns), b }.finite()
+    let model = LinearModel { a: transpose(&columns), b };
+    check_finite("a", model.a.as_flattened())?;
+    check_finite("b", &model.b)?;
+    Ok(model)
 }
 
 /// As [`derivatives`], out of line, which saves flash.

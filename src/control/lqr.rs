@@ -32,15 +32,6 @@ impl<S: Real> Lqr<S> {
     }
 }
 
-impl Lqr {
-    pub(super) fn round<S: Real>(self) -> Lqr<S> {
-        Lqr {
-            gain: self.gain.map(S::from_f64),
-            cost_to_go: self.cost_to_go.map(|row| row.map(S::from_f64)),
-        }
-    }
-}
-
 /// The [linear-quadratic regulator](Lqr) of a discrete model.
 ///
 /// `q` weights the deviation: symmetric and positive semidefinite, by rows, 1/rad², s/rad² and
@@ -59,7 +50,8 @@ impl Lqr {
 /// [`ControlError::Invalid`] for an `r` that is not above 0, and each other [`ControlError`] except
 /// `NotInEquilibrium`.
 pub fn lqr<S: Real>(model: &LinearModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, ControlError> {
-    let model = model.finite()?;
+    check_finite("a", model.a.as_flattened())?;
+    check_finite("b", &model.b)?;
     check_finite("q", q.as_flattened())?;
     let [a, q] = [&model.a, q].map(|m| m.map(|row| row.map(S::to_f64)));
     let (b, r) = (model.b.map(S::to_f64), r.to_f64());
@@ -69,7 +61,8 @@ pub fn lqr<S: Real>(model: &LinearModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr
 
     let problem = Problem { a, b, q, r };
     let (gain, cost_to_go) = problem.solve()?;
-    let regulator = Lqr { gain, cost_to_go }.round::<S>();
+    let regulator =
+        Lqr { gain: gain.map(S::from_f64), cost_to_go: cost_to_go.map(|row| row.map(S::from_f64)) };
     check_finite("gain", &regulator.gain)?;
     check_finite("cost_to_go", regulator.cost_to_go.as_flattened())?;
     if !problem.is_stable(&regulator.gain.map(S::to_f64)) {

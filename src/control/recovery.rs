@@ -52,7 +52,10 @@ impl<S: Real> Recovery<S> {
         let model = LinearModel { a: a.map(|row| row.map(S::to_f64)), b: b.map(S::to_f64) };
         // In f64, because the rounding of P to f32 can be larger than its smallest eigenvalue.
         let exact = lqr(&model, &identity(), 1.0)?;
-        let regulator = exact.round();
+        let regulator = Lqr {
+            gain: exact.gain.map(S::from_f64),
+            cost_to_go: exact.cost_to_go.map(|row| row.map(S::from_f64)),
+        };
         let factor = cholesky(exact.cost_to_go);
         let most = limit.to_f64() / largest(&factor, exact.gain);
         let safe = (most * SQRT_2).min(LINEAR / largest(&factor, [1.0, 0.0, 0.0, 0.0]));
