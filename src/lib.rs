@@ -32,8 +32,8 @@
 //! [`Acrobot`] is the environment. Its type parameters are the arithmetic, which is [`Fast`]
 //! (`f32`), [`Portable`] (`f64`), or [another one](arithmetic), and the [task](task). A [`Step`] has
 //! the [observation](task::Gymnasium#associatedtype.Observation). [`physics`] has the model alone,
-//! [`control`] regulates it and plans. [`batch`] has many acrobots at once. The [`guide`] has a page
-//! for each reader and each subject.
+//! [`control`] regulates it and plans. [`batch`] has many acrobots at once. The [`guide`] has a
+//! page for each reader and each subject.
 //!
 //! # Features
 //!
