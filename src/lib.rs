@@ -30,8 +30,8 @@
 //! [in a browser](guide::wasm) or [in Python](guide::python).
 //!
 //! [`Acrobot`] is the environment. Its type parameters are the arithmetic, which is [`Fast`]
-//! (`f32`), [`Portable`] (`f64`), or [another one](arithmetic), and the [task](task). A [`Step`] has
-//! the [observation](task::Gymnasium#associatedtype.Observation). [`physics`] has the model alone,
+//! (`f32`), [`Portable`] (`f64`), or [another one](arithmetic), and the [task](task). A [`Step`]
+//! has the [observation](task::Gymnasium#associatedtype.Observation). [`physics`] has the model,
 //! [`control`] regulates it and plans. [`batch`] has many acrobots at once. The [`guide`] has a
 //! page for each reader and each subject.
 //!
