@@ -8,9 +8,7 @@ use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::Pcg64;
 use crate::physics::{Params, Pendulum, State, check_torque, default_model};
-use crate::task::{
-    Draws, Gymnasium, Observation, Of, ResetBounds, ResetOptions, Seen, Task, episode,
-};
+use crate::task::{Draws, Gymnasium, Observation, ResetBounds, ResetOptions, Seen, Task, episode};
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
@@ -44,18 +42,8 @@ impl<O> Step<O> {
 ///
 /// `A` is the [arithmetic](crate::arithmetic), which determines every bit. `R` is the generator for
 /// initial states and torque noise. The state [is always
-/// finite](Pendulum#results-that-are-not-finite). [`TimeLimit`](crate::TimeLimit) adds truncation.
-///
-/// ```
-/// use acrobot::{Acrobot, Action, Fast};
-///
-/// let mut acrobot = Acrobot::<Fast>::new(42); // the state after Gymnasium's reset(seed=42)
-/// let mut steps = 0;
-/// while !acrobot.step(Action::Positive).done() && steps < 500 {
-///     steps += 1;
-/// }
-/// acrobot.reset(); // the next initial state of the same stream
-/// ```
+/// finite](Pendulum#results-that-are-not-finite). [`TimeLimit`](crate::TimeLimit) adds truncation:
+/// [an example](crate).
 ///
 /// # Snapshots
 ///
@@ -162,7 +150,7 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
     /// adapter](crate::guide::rust#generators).
     #[must_use]
     pub fn with_rng(mut rng: R) -> Self {
-        const { default_model::<A, Of<T>>() };
+        const { default_model::<A, T>() };
         let state = T::DEFAULT.draw(T::RESET_BOUNDS, &mut rng).cast();
         // Built field by field: see `Params::default`.
         let params = T::PARAMS.cast();
@@ -246,7 +234,7 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
     /// [`static`](crate::guide::embedded#a-first-program).
     #[must_use]
     pub const fn hanging(rng: R) -> Self {
-        let model = const { default_model::<A, Of<T>>() };
+        let model = const { default_model::<A, T>() };
         Self::from_pendulum(Pendulum::from_model(model, [A::Scalar::ZERO; 4]), rng)
     }
 
@@ -269,7 +257,6 @@ impl<A: Arithmetic, T: Task> Acrobot<A, T> {
 
 #[cfg(feature = "defmt")]
 impl<A: Arithmetic, T: Task, R: defmt::Format> defmt::Format for Acrobot<A, T, R> {
-    /// Parameters, state and generator.
     fn format(&self, f: defmt::Formatter<'_>) {
         let (params, state, rng) = (self.params(), self.state(), &self.rng);
         defmt::write!(f, "Acrobot {{ params: {}, state: {}, rng: {} }}", params, state, rng);

@@ -37,7 +37,7 @@ use crate::error::Error;
 pub use crate::math::SimdLevel;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{State, default_model, model};
-use crate::task::{Gymnasium, Of, ResetBounds, Task};
+use crate::task::{Gymnasium, ResetBounds, Task};
 use buffers::{check_length, take_mut};
 use lane_params::Own;
 use settings::Settings;
@@ -80,7 +80,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
             return Err(Error::EmptyBatch);
         }
         check_length("blocks", blocks.len(), generators.len().div_ceil(N))?;
-        const { default_model::<A, Of<T>>() };
+        const { default_model::<A, T>() };
         let model = model::<A>(T::PARAMS.cast());
         let shared = if lane_params.is_empty() {
             Some(model)

@@ -1,16 +1,9 @@
-//! The error type: why an input was rejected.
+//! The error type.
 
 use core::fmt;
 
-/// Why an input was rejected. `Display` names the value, its unit and the rule.
-///
-/// ```
-/// use acrobot::{Acrobot, Fast, Params};
-///
-/// let mut acrobot = Acrobot::<Fast>::new(0);
-/// let error = acrobot.set_params(Params { dt: 0.0, ..Params::DEFAULT }).unwrap_err();
-/// assert_eq!(error.to_string(), "dt must be finite and above 0 s, got 0");
-/// ```
+/// Why an input was rejected. `Display` names the value, its unit and the rule: "dt must be finite
+/// and above 0 s, got 0".
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

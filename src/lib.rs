@@ -29,20 +29,11 @@
 //! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in C](guide::c),
 //! [in a browser](guide::wasm) or [in Python](guide::python).
 //!
-//! # What everybody uses
-//!
-//! - [`Acrobot`] is the environment. Its type parameters are the arithmetic, which is [`Fast`]
-//!   (`f32`), [`Portable`] (`f64`), or [another one](arithmetic), and the [task](task).
-//! - [`TimeLimit`] truncates episodes, after 500 steps as `Acrobot-v1`.
-//! - [`Action`] goes into a step. [`Step`] comes out, with the
-//!   [observation](task::Gymnasium#associatedtype.Observation), the reward, and whether the episode
-//!   is done.
-//! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques.
-//! - [`ResetOptions`] has what a reset may choose: the seed, and the bounds of the initial state.
-//! - [`Error`] names a rejected value, its unit and the rule.
-//!
-//! [`physics`] has the model alone, [`control`] regulates it and plans. [`batch`] has many
-//! acrobots at once. The [`guide`] has a page for each reader and each subject.
+//! [`Acrobot`] is the environment. Its type parameters are the arithmetic, which is [`Fast`]
+//! (`f32`), [`Portable`] (`f64`), or [another one](arithmetic), and the [task](task). A [`Step`]
+//! has the [observation](task::Gymnasium#associatedtype.Observation). [`physics`] has the model,
+//! [`control`] regulates it and plans. [`batch`] has many acrobots at once. The [`guide`] has a
+//! page for each reader and each subject.
 //!
 //! # Features
 //!

@@ -4,8 +4,8 @@
 //! [`Pendulum`] has no random numbers, so it takes a third of the flash of an
 //! [`Acrobot`](crate::Acrobot).
 //!
-//! For your own integrator, use [`Pendulum::derivative`]. [`control`](crate::control)
-//! linearizes, regulates and plans. The guide explains the [equations](crate::guide::equations).
+//! [`control`](crate::control) linearizes, regulates and plans. The guide explains the
+//! [equations](crate::guide::equations).
 
 /// Repeats items for both scalars, named `S`: arithmetic in a `const fn` needs a concrete type.
 macro_rules! for_f32_and_f64 {

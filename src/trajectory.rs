@@ -1,23 +1,5 @@
-//! The last transitions of an episode, in fixed memory.
-//!
-//! ```
-//! use acrobot::trajectory::Trajectory;
-//! use acrobot::{Acrobot, Action, Fast, TimeLimit};
-//! use core::fmt::Write;
-//!
-//! let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(42));
-//! let mut trajectory = Trajectory::<f32, 100>::new();
-//! trajectory.step(&mut acrobot, Action::Zero); // acrobot.step(Action::Zero), recorded
-//!
-//! let mut line = heapless::String::<200>::new();
-//! for row in trajectory.rows() {
-//!     write!(line, "{row}")?; // without a heap; `write_csv` writes all lines
-//! }
-//! # Ok::<(), core::fmt::Error>(())
-//! ```
-//!
-//! Formatting floats costs a microcontroller 28 KB of flash. With the `serde` feature, postcard
-//! writes a `Transition<f32>` into 42 bytes instead.
+//! The last transitions of an episode, in fixed memory: [an
+//! example](crate::guide::embedded_topics#limits-random-actions-the-last-steps).
 
 use core::fmt;
 
@@ -41,17 +23,17 @@ pub struct Transition<S = f64> {
     pub state: State<S>,
     /// The requested torque, N m, without noise.
     pub torque: S,
-    /// −1, or 0 if `terminated`; of a swing-up from 0 to 1.
+    /// The task's reward.
     pub reward: f32,
     /// The state after the step.
     pub next: State<S>,
-    /// Whether `next` is a goal state.
+    /// Whether the task ended the episode.
     pub terminated: bool,
     /// Whether the time limit ended the episode.
     pub truncated: bool,
 }
 
-/// The last `N` transitions, oldest first: [an example](self). With `f32` each takes 44 bytes.
+/// The last `N` transitions, oldest first. With `f32` each takes 44 bytes.
 #[derive(Clone, Debug)]
 pub struct Trajectory<S, const N: usize> {
     /// Not heapless's history buffer, whose indexing can panic.
@@ -139,7 +121,8 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         self.transitions.iter()
     }
 
-    /// All transitions as rows of CSV, oldest first. [`HEADER`] names their columns.
+    /// All transitions as rows of CSV, oldest first, which `write!(line, "{row}")` writes without a
+    /// heap. [`HEADER`] names their columns.
     ///
     /// `step` counts from 1 at the first push, including dropped ones. Numbers have the fewest
     /// digits that parse to the same bits: in `f32` about 150 bytes a row, and more near 0.
@@ -193,7 +176,6 @@ impl<S: Real, const N: usize> Default for Trajectory<S, N> {
 
 #[cfg(feature = "defmt")]
 impl<S: Real + defmt::Format, const N: usize> defmt::Format for Trajectory<S, N> {
-    /// All transitions, oldest first.
     fn format(&self, f: defmt::Formatter<'_>) {
         defmt::write!(f, "Trajectory [");
         for transition in self.iter() {

@@ -24,6 +24,7 @@ const _: () = {
     assert!(size_of::<Acrobot<Portable>>() <= 432);
     assert!(size_of::<State<f32>>() == 16);
     assert!(REWARD_THRESHOLD == -100.0);
+    assert!(ResetBounds::new(-0.25, 0.5).is_ok() && ResetBounds::new(0.5, -0.25).is_err());
     assert!(size_of::<Action>() == 1);
     assert!(size_of::<Fast>() == 0);
     assert!(size_of::<SeedSequence>() == 48);

@@ -108,20 +108,19 @@ fn coulomb_friction_holds_in_steps_of_any_length() {
     let mut rng = Pcg64::new(3);
     let mut draw = |low: f64, high: f64| uniform(&mut rng, low, high);
     for _ in 0..2000 {
-        let dt = draw(1e-3, 0.05) as f32;
         let params = Params {
-            length1: draw(0.2, 2.0) as f32,
-            mass1: draw(0.2, 2.0) as f32,
-            mass2: draw(0.2, 2.0) as f32,
-            inertia1: draw(0.01, 0.5) as f32,
-            inertia2: draw(0.01, 0.5) as f32,
+            dt: draw(1e-3, 0.05),
+            length1: draw(0.2, 2.0),
+            mass1: draw(0.2, 2.0),
+            mass2: draw(0.2, 2.0),
+            inertia1: draw(0.01, 0.5),
+            inertia2: draw(0.01, 0.5),
             gravity: 0.0,
-            dt,
-            coulomb: Joints { joint1: draw(0.0, 2.0) as f32, joint2: draw(0.0, 2.0) as f32 },
+            coulomb: Joints { joint1: draw(0.0, 2.0), joint2: draw(0.0, 2.0) },
             ..Params::DEFAULT
         };
         let start = State::from([0.0, draw(-3.0, 3.0), draw(-0.1, 0.1), draw(-0.1, 0.1)]);
-        let mut pendulum = Pendulum::<Damped<Fast>>::new(params, start.cast()).unwrap();
+        let mut pendulum = Pendulum::<Damped<Fast>>::new(params.cast(), start.cast()).unwrap();
         let first = pendulum.energy();
         for _ in 0..400 {
             let before = pendulum.energy();

@@ -7,8 +7,7 @@ use std::str::FromStr;
 use acrobot::batch::{Batch, Block};
 use acrobot::env::Env;
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
-use acrobot::task::ResetBounds;
-use acrobot::{Acrobot, Error, Fast, Portable};
+use acrobot::{Acrobot, Fast, Portable};
 use common::lines;
 use rand_core::Rng;
 
@@ -132,13 +131,6 @@ fn long_texts_are_seeds_up_to_a_limit() {
         error.to_string(),
         "seed must be a number of 1 to 4300 decimal digits, got '9' as character 4301"
     );
-}
-
-#[test]
-fn bounds_can_be_checked_in_a_const() {
-    const BOUNDS: Result<ResetBounds, Error> = ResetBounds::new(-0.25, 0.5);
-    assert_eq!(BOUNDS, ResetBounds::new(-0.25, 0.5));
-    const { assert!(ResetBounds::new(0.5, -0.25).is_err()) };
 }
 
 /// Bytes are those of the next words, and 32-bit draws their halves, the lower one first.

@@ -2,7 +2,7 @@
 //! with the reason. `cargo test -p properties` resumes snapshots in more formats.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Reference};
-use acrobot::batch::{Member, VecBatch};
+use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
@@ -60,31 +60,15 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
     assert!(postcard::from_bytes::<Acrobot<Portable>>(&bytes).is_err());
 }
 
-/// A batch whose resets draw parameters, after a step. Single acrobots make the step, so that this
-/// file compiles no batch's.
+/// A batch whose resets draw parameters, after a step.
 fn batch() -> VecBatch<Fast> {
-    let seed = SeedSequence::new(42);
-    let bounds = ResetBounds::new(-0.5, 0.25).unwrap();
-    let mut batch = VecBatch::new(seed.clone(), 2).unwrap();
+    let mut batch = VecBatch::new(SeedSequence::new(42), 2).unwrap();
     batch.own_params().unwrap();
     batch.set_draws(common::draws::<Fast>()).unwrap();
-    batch.set_reset_bounds(bounds);
+    batch.set_reset_bounds(ResetBounds::new(-0.5, 0.25).unwrap());
     batch.set_max_steps(30.try_into().unwrap());
-    for i in 0..2 {
-        let mut alone = Acrobot::<Fast>::with_rng(seed.child(i as u64).into());
-        alone.reset_with(bounds.into());
-        alone.draw_params(batch.draws()).unwrap();
-        let params = *alone.params();
-        alone.step(Action::Positive);
-        let member = Member {
-            params,
-            state: alone.state(),
-            elapsed_steps: 1,
-            ended: false,
-            rng: alone.rng().clone(),
-        };
-        batch.set_member(i, member).unwrap();
-    }
+    batch.reset();
+    batch.step(&[Action::Positive; 2]).unwrap();
     batch
 }
 

@@ -4,40 +4,23 @@
 use std::f32::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable};
+use rayon::prelude::*;
 
 const EVERY: usize = if cfg!(debug_assertions) { 257 } else { 1 };
 
 /// The largest errors of sine and cosine over each `stride`-th `f32` from `start` to `end`. The
 /// negative arguments must give the exact mirror image, except for the sign of zero.
 fn largest_errors<A: Arithmetic<Scalar = f32>>(start: f32, end: f32, stride: usize) -> [f64; 2] {
-    let (start, end) = (start.to_bits(), end.to_bits());
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let part = |thread: usize| {
-        let mut largest = [0.0_f64; 2];
-        for bits in (start..=end).skip(thread * stride).step_by(threads * stride) {
-            let x = f32::from_bits(bits);
-            let (sin, cos) = A::sin_cos(x);
-            let (true_sin, true_cos) = Host::sin_cos(x.into());
-            assert!(sin.abs() <= 1.0 && cos.abs() <= 1.0, "{x:e}: {sin} {cos}");
-            let errors = [f64::from(sin) - true_sin, f64::from(cos) - true_cos];
-            for (largest, error) in largest.iter_mut().zip(errors) {
-                *largest = largest.max(error.abs());
-            }
-            let (mirrored_sin, mirrored_cos) = A::sin_cos(-x);
-            assert_eq!(-sin, mirrored_sin, "sin of {x:e}");
-            assert_eq!(cos, mirrored_cos, "cos of {x:e}");
-        }
-        largest
-    };
-    let part = &part;
-    std::thread::scope(|scope| {
-        let parts: Vec<_> = (0..threads).map(|thread| scope.spawn(move || part(thread))).collect();
-        parts
-            .into_iter()
-            .map(|part| part.join().unwrap())
-            .reduce(|x, y| [x[0].max(y[0]), x[1].max(y[1])])
-            .unwrap()
-    })
+    let arguments = (start.to_bits()..end.to_bits() + 1).into_par_iter().step_by(stride);
+    let errors = arguments.map(|bits| {
+        let x = f32::from_bits(bits);
+        let (sin, cos) = A::sin_cos(x);
+        let (true_sin, true_cos) = Host::sin_cos(x.into());
+        assert!(sin.abs() <= 1.0 && cos.abs() <= 1.0, "{x:e}: {sin} {cos}");
+        assert_eq!(A::sin_cos(-x), (-sin, cos), "{x:e}");
+        [f64::from(sin) - true_sin, f64::from(cos) - true_cos].map(f64::abs)
+    });
+    errors.reduce(|| [0.0; 2], |x, y| [x[0].max(y[0]), x[1].max(y[1])])
 }
 
 #[test]

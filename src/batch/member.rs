@@ -10,20 +10,7 @@ use crate::physics::{Params, State};
 use crate::task::Task;
 
 /// One acrobot of a batch, as plain data. Unlike a [whole batch](Batch#snapshots), it is stored
-/// without a version.
-///
-/// ```
-/// use acrobot::Fast;
-/// use acrobot::batch::{Batch, Block, Member};
-/// use acrobot::numpy::Pcg64;
-///
-/// let mut batch = Batch::<Fast, _>::new(42, ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]))?;
-/// let best: Member<Fast> = batch.member(19).unwrap();
-/// for index in 0..batch.len() {
-///     batch.set_member(index, best.clone())?; // all continue from the best
-/// }
-/// # Ok::<(), acrobot::Error>(())
-/// ```
+/// without a version. Others can continue from it by [`set_member`](Batch::set_member).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]

@@ -133,21 +133,14 @@ impl<'de, A: Arithmetic, T: Task, const N: usize> serde::Deserialize<'de> for Ve
 }
 
 /// Reads a snapshot: calls `each` with the members in their order, and returns the settings.
-fn read<'de, A, T, D>(
+fn read<'de, A: Arithmetic, T: Task, D: Deserializer<'de>>(
     deserializer: D,
     each: impl FnMut(Member<A>) -> Result<(), Error>,
-) -> Result<Settings<A, T>, D::Error>
-where
-    A: Arithmetic,
-    T: Task,
-    D: Deserializer<'de>,
-{
+) -> Result<Settings<A, T>, D::Error> {
     struct Records<A, T, F>(F, PhantomData<(A, T)>);
 
-    impl<'de, A, T, F> Visitor<'de> for Records<A, T, F>
+    impl<'de, A: Arithmetic, T: Task, F> Visitor<'de> for Records<A, T, F>
     where
-        A: Arithmetic,
-        T: Task,
         F: FnMut(Member<A>) -> Result<(), Error>,
     {
         type Value = Settings<A, T>;

@@ -8,20 +8,8 @@ use crate::task::Draws;
 
 /// The memory of a [`Batch`](super::Batch): arrays, slices or `Vec`s, as `(blocks, generators)`
 /// where acrobots share their parameters, and `(blocks, generators, lane_params, draws)` where each
-/// has its own, from which resets draw. Their lengths must never change.
-///
-/// ```
-/// use acrobot::Fast;
-/// use acrobot::batch::{Batch, Block, LaneParams};
-/// use acrobot::numpy::Pcg64;
-/// use acrobot::task::Draws;
-///
-/// let mut blocks = vec![Block::EMPTY; 4]; // 16 acrobots in each
-/// let generators = [Pcg64::UNSEEDED; 50];
-/// let memory = (&mut blocks[..], generators, [LaneParams::default(); 4], Draws::NONE);
-/// assert_eq!(Batch::<Fast, _>::new(42, memory)?.len(), 50);
-/// # Ok::<(), acrobot::Error>(())
-/// ```
+/// has its own, from which resets draw. Their lengths must never change. For 50 acrobots, 16 in a
+/// block: `([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50], [LaneParams::default(); 4], Draws::NONE)`.
 pub trait Storage<A: Arithmetic, const N: usize> {
     #[doc(hidden)]
     fn slices(&self) -> Slices<'_, A, N>;

@@ -30,12 +30,11 @@ pub struct VecBatch<A: Arithmetic, T: Task = Gymnasium, const N: usize = 16> {
     results: StepResults<T::Observation>,
 }
 
-/// The results of a step of a [`VecBatch`], with one element for each acrobot. The next step
-/// overwrites them.
+/// The results of a step of a [`VecBatch`], as in [`StepBuffers`]. The next step overwrites them.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StepResults<O = [f32; 6]> {
-    /// The rewards; 0 where an acrobot was only reset.
+    /// The rewards.
     pub rewards: Vec<f32>,
     /// Whether the task ended each episode.
     pub terminated: Vec<bool>,
@@ -43,8 +42,8 @@ pub struct StepResults<O = [f32; 6]> {
     pub truncated: Vec<bool>,
     /// The observations of the new states.
     pub observations: Vec<O>,
-    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the
-    /// episodes that this step ended. Those of other acrobots are older, or 0.
+    /// The last observations of episodes that this step ended. Those of other acrobots are older,
+    /// or 0.
     pub final_observations: Vec<O>,
 }
 
@@ -105,11 +104,8 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
         }
     }
 
-    /// Calls [`Batch::step_into`] with actions or torques, and returns the results.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Batch::step_into`], and [`Error::OutOfMemory`].
+    /// Calls [`Batch::step_into`], with its errors and [`Error::OutOfMemory`], and returns the
+    /// results.
     pub fn step<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],

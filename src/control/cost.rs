@@ -6,17 +6,8 @@ use crate::physics::{Params, positions};
 
 /// The weights of what a plan costs: the sum of all terms, over all its steps, and of its end. A
 /// larger weight makes its term smaller, at the expense of the others: [a table of what each
-/// does](crate::guide::control#what-a-plan-costs).
-///
-/// ```
-/// use acrobot::control::{Cost, Planner};
-/// use acrobot::{Fast, Params};
-///
-/// let params = Params { dt: 0.01, ..Params::SWINGUP };
-/// // Spares the motor: less energy, and no jumps of the torque.
-/// let cost = Cost { power: 0.5, torque_change: 1.0, ..Cost::new(&params) };
-/// let planner = Planner::<Fast>::with_cost(params, 2.0, cost);
-/// ```
+/// does](crate::guide::control#what-a-plan-costs). `Cost { power: 0.5, torque_change: 1.0,
+/// ..Cost::new(&params) }` spares the motor: less energy, and no jumps of the torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)] // for bindings/c
@@ -66,21 +57,18 @@ impl<S: Real> Cost<S> {
 
     /// Checks that all weights are finite and at least 0, and the margin above 0.
     pub(super) fn check(&self) -> Result<(), Error> {
-        const WEIGHTS: [(&str, &str); 9] = [
-            ("angles", "per s"),
-            ("angles", "per s"),
-            ("velocities", "s/rad²"),
-            ("velocities", "s/rad²"),
-            ("torque", "per (N m)² s"),
-            ("torque_change", "per (N m)²"),
-            ("power", "per J"),
-            ("below", "per s"),
-            ("arrival", "of ln(1 + e)"),
-        ];
-        let Self { angles, velocities, torque, torque_change, power, below, arrival, .. } = *self;
-        let ([a1, a2], [v1, v2]) = (angles, velocities);
-        let weights = [a1, a2, v1, v2, torque, torque_change, power, below, arrival];
-        for ((name, unit), weight) in WEIGHTS.into_iter().zip(weights) {
+        let ([angle1, angle2], [velocity1, velocity2]) = (self.angles, self.velocities);
+        for (name, weight, unit) in [
+            ("angles", angle1, "per s"),
+            ("angles", angle2, "per s"),
+            ("velocities", velocity1, "s/rad²"),
+            ("velocities", velocity2, "s/rad²"),
+            ("torque", self.torque, "per (N m)² s"),
+            ("torque_change", self.torque_change, "per (N m)²"),
+            ("power", self.power, "per J"),
+            ("below", self.below, "per s"),
+            ("arrival", self.arrival, "of ln(1 + e)"),
+        ] {
             Range::AtLeastZero.check(name, weight.to_f64(), unit)?;
         }
         Range::Finite.check("height", self.height.to_f64(), "m")?;

@@ -1,4 +1,4 @@
-//! The error type of the module: why a model, a force or a regulator cannot be computed.
+//! The error type of the module.
 
 use core::fmt;
 

@@ -106,17 +106,8 @@ pub fn prediction_error(
 }
 
 /// What recordings tell about a machine: the normal equations of least squares, of constant size,
-/// so firmware can keep them while it shakes the machine.
-///
-/// ```
-/// use acrobot::control::{Evidence, Sample};
-///
-/// let mut evidence = Evidence::NONE;
-/// // A machine that hangs tells nothing.
-/// evidence.add(&[Sample::default(); 500], 0.002, 9.81, 3, 100)?;
-/// assert_eq!(evidence.solve().undetermined, 10);
-/// # Ok::<(), acrobot::control::ControlError>(())
-/// ```
+/// so firmware can keep them while it shakes the machine: [an
+/// example](crate::guide::real#2-identify).
 #[derive(Clone, Debug)]
 pub struct Evidence {
     /// \[R y\]ᵀ \[R y\] of the equations R x = y.

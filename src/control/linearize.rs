@@ -91,10 +91,9 @@ impl<S: Real> MassMatrix<S> {
 
 /// \[θ̈1, θ̈2\], and their derivatives by θ1, θ2, θ̇1, θ̇2 and the torque.
 ///
-/// The equations M q̈ = f for the absolute angles α = θ1 and β = θ1 + θ2 are those of
-/// docs/equations.md: M has the rows \[upper, c\] and \[c, link2\], with c = coupling cos θ2. The
-/// derivative by p is M⁻¹ (∂f/∂p − ∂M/∂p q̈). Nothing cancels in the determinant, where Gymnasium's
-/// form loses digits if one link is much heavier than the other.
+/// The equations M q̈ = f for the absolute angles are those of docs/equations.md. The derivative by
+/// p is M⁻¹ (∂f/∂p − ∂M/∂p q̈). Nothing cancels in the determinant, where Gymnasium's form loses
+/// digits if one link is much heavier than the other.
 #[inline(always)]
 pub(super) fn partials<A: Arithmetic>(
     model: &Model<A::Scalar>,

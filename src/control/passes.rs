@@ -2,7 +2,7 @@
 //! backward, which finds the change. Of one plan, or of many side by side, a plan a lane.
 //!
 //! No lane reads another one, so a plan has the same bits alone and in any lane. The loops over
-//! lanes are around code for one number: see `math/lanes.rs`.
+//! lanes are around code for one number: see ARCHITECTURE.md.
 
 use super::cost::Weights;
 use super::linearize_step::{derivatives, derivatives_alone, sin_cos_near};

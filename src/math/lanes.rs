@@ -32,9 +32,6 @@ pub trait Numbers<S: Real>:
     const LEN: usize;
 
     /// The number of lane `i`, which must be below `LEN`.
-    ///
-    /// A loop over the lanes around code for one number vectorizes however long that code is. Of
-    /// operations with [`Lanes`], LLVM keeps the results in memory where the code is long.
     #[doc(hidden)]
     fn lane(&self, i: usize) -> S;
 

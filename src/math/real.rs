@@ -3,6 +3,8 @@
 use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+use sealed::Sealed as _;
+
 /// A scalar: `f32` or `f64`.
 ///
 /// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so results are
@@ -61,6 +63,7 @@ macro_rules! impl_real {
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
             const EPSILON: Self = $scalar::EPSILON;
+            const MAGIC: Self = 1.5 / $scalar::EPSILON;
 
             #[inline]
             fn select([first, second, third]: [Self; 3], index: u8) -> Self {
@@ -79,11 +82,8 @@ macro_rules! impl_real {
 
             #[inline(always)]
             fn power_of_two(self) -> Self {
-                // As in `round_small`: the last bits of the sum are the integer, and the exponent
-                // has a bias.
-                const MAGIC: $scalar = 1.5 / $scalar::EPSILON;
                 const DIGITS: u32 = $scalar::MANTISSA_DIGITS - 1;
-                let biased = self + (MAGIC + ($scalar::MAX_EXP - 1) as $scalar);
+                let biased = self + (Self::MAGIC + ($scalar::MAX_EXP - 1) as $scalar);
                 $scalar::from_bits(biased.to_bits() << DIGITS)
             }
         }
@@ -110,9 +110,7 @@ macro_rules! impl_real {
 
             #[inline]
             fn round_small(self) -> Self {
-                // 1.5 / ε: the sum's last place is 1, so the addition itself rounds.
-                const MAGIC: $scalar = 1.5 / $scalar::EPSILON;
-                (self + MAGIC) - MAGIC
+                (self + Self::MAGIC) - Self::MAGIC
             }
 
             #[inline]
@@ -159,6 +157,9 @@ pub(crate) mod sealed {
 
         /// The distance from 1 to the next number.
         const EPSILON: Self;
+
+        /// 1.5 / ε: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
+        const MAGIC: Self;
 
         /// The element with an index of 0 to 2, without a branch or an address that depends on the
         /// index.

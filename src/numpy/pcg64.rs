@@ -128,7 +128,6 @@ impl fmt::Debug for Pcg64 {
 
 #[cfg(feature = "defmt")]
 impl defmt::Format for Pcg64 {
-    /// The same as `Debug`.
     fn format(&self, f: defmt::Formatter<'_>) {
         let mut running = self.running();
         let (next_u64, half) = (running.next_u64(), running.half);

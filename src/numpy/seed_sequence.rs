@@ -11,17 +11,6 @@ use crate::error::Error;
 ///
 /// It has 48 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the
 /// same children by accident.
-///
-/// ```
-/// use acrobot::numpy::SeedSequence;
-///
-/// let mut seed = SeedSequence::new(42);
-/// assert_eq!(seed.generate_state(), [0x9f1e_2e6d_cd54_0ab7, 0xd578_73dc_79fb_94b6]);
-///
-/// // An independent stream for each of a thousand workers.
-/// let workers: Vec<SeedSequence> = seed.spawn(1000).collect();
-/// assert_eq!(workers[7], seed.child(7));
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SeedSequence {

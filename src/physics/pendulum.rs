@@ -263,9 +263,7 @@ for_f32_and_f64! {
         /// let pendulum = Params::<f64>::DEFAULT.pendulum::<Host>(State::HANGING);
         /// ```
         ///
-        /// # Errors
-        ///
-        /// Those of [`Pendulum::new`].
+        /// Its errors are those of [`Pendulum::new`].
         pub const fn pendulum<A: Arithmetic<Scalar = S>>(
             self,
             state: State<S>,
@@ -295,7 +293,6 @@ impl<A: Arithmetic> PartialEq for Pendulum<A> {
 
 #[cfg(feature = "defmt")]
 impl<A: Arithmetic> defmt::Format for Pendulum<A> {
-    /// Parameters and state.
     fn format(&self, f: defmt::Formatter<'_>) {
         let (params, state) = (self.params(), self.state());
         defmt::write!(f, "Pendulum {{ params: {}, state: {} }}", params, state);

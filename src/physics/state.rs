@@ -4,7 +4,7 @@ use crate::error::{Error, Range};
 use crate::math::Real;
 
 /// The state of an acrobot: two angles and their velocities, in the order of Gymnasium's
-/// `env.unwrapped.state`.
+/// `env.unwrapped.state`, also as an array.
 ///
 /// After a step the angles are within \[−π, π\] and the velocities within their bounds. Before, a
 /// state may be outside.
@@ -24,7 +24,6 @@ pub struct State<S = f64> {
 }
 
 impl<S> From<[S; 4]> for State<S> {
-    /// From \[θ1, θ2, θ̇1, θ̇2\].
     #[inline]
     fn from([theta1, theta2, dtheta1, dtheta2]: [S; 4]) -> Self {
         Self { theta1, theta2, dtheta1, dtheta2 }
@@ -32,7 +31,6 @@ impl<S> From<[S; 4]> for State<S> {
 }
 
 impl<S> From<State<S>> for [S; 4] {
-    /// To \[θ1, θ2, θ̇1, θ̇2\].
     #[inline]
     fn from(state: State<S>) -> Self {
         [state.theta1, state.theta2, state.dtheta1, state.dtheta2]
@@ -54,16 +52,6 @@ impl<S: Real> State<S> {
         <[S; 4]>::from(self).map(|x| T::from_f64(x.to_f64())).into()
     }
 
-    /// The name, value and unit of each number.
-    pub(crate) const fn fields(&self) -> [(&'static str, S, &'static str); 4] {
-        [
-            ("theta1", self.theta1, "rad"),
-            ("theta2", self.theta2, "rad"),
-            ("dtheta1", self.dtheta1, "rad/s"),
-            ("dtheta2", self.dtheta2, "rad/s"),
-        ]
-    }
-
     /// Checks that all four numbers are finite.
     ///
     /// # Errors
@@ -78,7 +66,12 @@ for_f32_and_f64! {
     impl State<S> {
         /// [`State::validate`], also in a `const`, where neither `?` nor `for` is allowed.
         pub(crate) const fn check(&self) -> Result<(), Error> {
-            let mut fields: &[_] = &self.fields();
+            let mut fields: &[_] = &[
+                ("theta1", self.theta1, "rad"),
+                ("theta2", self.theta2, "rad"),
+                ("dtheta1", self.dtheta1, "rad/s"),
+                ("dtheta2", self.dtheta2, "rad/s"),
+            ];
             while let [(name, value, unit), rest @ ..] = fields {
                 if let Err(error) = Range::Finite.check(name, *value as f64, unit) {
                     return Err(error);

@@ -11,20 +11,9 @@ use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
 use super::{Figure, Theme};
 
-/// A picture of RGB bytes: Gymnasium's `rgb_array`, and an embedded-graphics target.
-///
-/// ```
-/// use acrobot::render::{Figure, Frame};
-/// use acrobot::{Acrobot, Portable};
-///
-/// let frame = Frame::of(&Figure::new(&Acrobot::<Portable>::new(42)));
-/// let mut file = Vec::new(); // as PNG, with the png crate
-/// let mut encoder = png::Encoder::new(&mut file, frame.width(), frame.height());
-/// encoder.set_color(png::ColorType::Rgb);
-/// encoder.write_header()?.write_image_data(frame.bytes())?;
-/// # assert!(file.starts_with(b"\x89PNG"));
-/// # Ok::<(), png::EncodingError>(())
-/// ```
+/// A picture of RGB bytes: Gymnasium's `rgb_array`, and an embedded-graphics target. The crate
+/// `png` writes [`bytes`](Self::bytes) as `ColorType::Rgb`: [an
+/// example](crate::guide::rust#spaces-wrappers-rendering).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
     width: u32,

@@ -111,18 +111,8 @@ fn normal<R: Rng + ?Sized>(rng: &mut R, mean: f64, std: f64, low: f64, high: f64
 }
 
 /// How each reset draws the parameters: after the initial state, in the order of the fields, from
-/// the same generator. [Those of a batch](crate::guide::rust#many-at-once) draw by themselves.
-///
-/// ```
-/// use acrobot::task::{Draw, Draws};
-/// use acrobot::{Acrobot, Fast, Params};
-///
-/// let mass2 = Draw::Uniform { low: 0.8, high: 1.2 };
-/// let mut acrobot = Acrobot::<Fast>::new(42);
-/// acrobot.draw_params(&Draws::new(Params { mass2, ..Draws::FIXED })?)?;
-/// assert!((0.8..=1.2).contains(&acrobot.params().mass2));
-/// # Ok::<(), acrobot::Error>(())
-/// ```
+/// the same generator. Those of a [batch](crate::guide::rust#many-at-once) draw by themselves, an
+/// acrobot by [`draw_params`](crate::Acrobot::draw_params).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Draws<S = f64>(Params<Draw<S>>);

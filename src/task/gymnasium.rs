@@ -5,7 +5,6 @@ use core::num::NonZeroU32;
 
 use super::{Seen, Task};
 use crate::arithmetic::{Arithmetic, Form, Numbers, Real};
-use crate::math::SinCos;
 use crate::math::sealed::Sealed;
 use crate::physics::Params;
 
@@ -38,22 +37,20 @@ impl Task for Gymnasium {
     /// Whether −cos θ1 − cos(θ1 + θ2) > 1, whatever the lengths of the links.
     #[inline(always)]
     fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
-        match A::FORM {
-            Form::Lean => lean(seen.sin_cos),
-            Form::Gymnasium => exact::<A, V>([seen.state.theta1, seen.state.theta2], seen.sin_cos),
-        }
-    }
-
-    /// −1, or 0 at the end.
-    #[inline(always)]
-    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
-        &self,
-        _: &Seen<V>,
-        _: &Params<V>,
-        _: V,
-        ended: V::Mask,
-    ) -> V::Single {
-        V::Single::either(ended, 0.0, -1.0)
+        let [(sin1, cos1), (sin2, cos2)] = seen.sin_cos;
+        let cos_sum = match A::FORM {
+            Form::Lean => cos1 * cos2 - sin1 * sin2,
+            Form::Gymnasium => {
+                // Without a positive −cos θ1 the sum cannot exceed 1, and needs no second cosine.
+                let zero = V::splat(A::Scalar::ZERO);
+                let lowest = cos1.map(|x| if x < A::Scalar::ZERO { x } else { A::Scalar::ZERO });
+                if lowest.all_within(zero) {
+                    return zero.above(A::Scalar::ONE);
+                }
+                A::cos_near(seen.state.theta2 + seen.state.theta1)
+            }
+        };
+        (-cos1 - cos_sum).above(A::Scalar::ONE)
     }
 }
 
@@ -91,36 +88,4 @@ impl Task for GymnasiumV0 {
     fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
         Gymnasium.ended::<A, V>(seen)
     }
-
-    #[inline(always)]
-    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
-        &self,
-        seen: &Seen<V>,
-        params: &Params<V>,
-        torque: V,
-        ended: V::Mask,
-    ) -> V::Single {
-        Gymnasium.reward::<A, V>(seen, params, torque, ended)
-    }
-}
-
-#[inline(always)]
-fn lean<S: Real, V: Numbers<S>>([(sin1, cos1), (sin2, cos2)]: [SinCos<V>; 2]) -> V::Mask {
-    let cos_sum = cos1 * cos2 - sin1 * sin2;
-    (-cos1 - cos_sum).above(S::ONE)
-}
-
-#[inline(always)]
-fn exact<A: Arithmetic, V: Numbers<A::Scalar>>(
-    [theta1, theta2]: [V; 2],
-    [(_, cos1), _]: [SinCos<V>; 2],
-) -> V::Mask {
-    // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
-    let zero = V::splat(A::Scalar::ZERO);
-    let lowest = cos1.map(|cos1| if cos1 < A::Scalar::ZERO { cos1 } else { A::Scalar::ZERO });
-    if lowest.all_within(zero) {
-        return zero.above(A::Scalar::ONE);
-    }
-    let height = -cos1 - A::cos_near(theta2 + theta1);
-    height.above(A::Scalar::ONE)
 }

@@ -53,12 +53,6 @@ impl ResetBounds {
         numbers.into()
     }
 
-    /// As [`draw`](Self::draw), with velocities of 0, for which it draws nothing.
-    pub(crate) fn draw_at_rest<R: Rng + ?Sized>(&self, rng: &mut R) -> State<f32> {
-        let [theta1, theta2] = [(); 2].map(|()| uniform(rng, self.low, self.high) as f32);
-        [theta1, theta2, 0.0, 0.0].into()
-    }
-
     /// The lower bound, rad and rad/s.
     #[must_use]
     #[inline]

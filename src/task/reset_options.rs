@@ -3,18 +3,8 @@
 use super::reset_bounds::ResetBounds;
 use crate::numpy::SeedSequence;
 
-/// The arguments of Gymnasium's `reset(seed=…, options=…)`.
-///
-/// ```
-/// use acrobot::task::ResetBounds;
-/// use acrobot::{Acrobot, Fast, ResetOptions};
-///
-/// let mut acrobot = Acrobot::<Fast>::new(0);
-/// // env.reset(seed=42, options={"low": -0.2, "high": 0.2})
-/// let bounds = ResetBounds::new(-0.2, 0.2)?;
-/// acrobot.reset_with(ResetOptions { bounds: Some(bounds), ..42.into() });
-/// # Ok::<(), acrobot::Error>(())
-/// ```
+/// The arguments of Gymnasium's `reset(seed=…, options=…)`: `42.into()` has a seed, `bounds.into()`
+/// bounds, and `ResetOptions { bounds: Some(bounds), ..42.into() }` both.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ResetOptions {
@@ -27,21 +17,18 @@ pub struct ResetOptions {
 }
 
 impl From<u64> for ResetOptions {
-    /// This seed, and the default bounds.
     fn from(seed: u64) -> Self {
         SeedSequence::new(seed).into()
     }
 }
 
 impl From<SeedSequence> for ResetOptions {
-    /// This seed, and the default bounds.
     fn from(seed: SeedSequence) -> Self {
         Self { seed: Some(seed), bounds: None }
     }
 }
 
 impl From<ResetBounds> for ResetOptions {
-    /// These bounds, and no seed.
     fn from(bounds: ResetBounds) -> Self {
         Self { seed: None, bounds: Some(bounds) }
     }

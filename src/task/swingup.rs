@@ -8,6 +8,7 @@ use super::reset_bounds::ResetBounds;
 use super::{Seen, Task};
 use crate::arithmetic::{Arithmetic, Numbers, Real};
 use crate::math::sealed::Sealed;
+use crate::numpy::uniform;
 use crate::physics::{Params, State};
 
 /// dm_control's `acrobot-swingup`: swing up from anywhere and stay up. The reward is 1 up to
@@ -29,10 +30,11 @@ impl Task for Swingup {
     /// rest \[0, 0, −1, −1, 0, 0\].
     type Observation = [f32; 6];
 
-    /// At rest.
+    /// At rest: it draws the angles only.
     #[inline]
     fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
-        bounds.draw_at_rest(rng)
+        let [theta1, theta2] = [(); 2].map(|()| uniform(rng, bounds.low(), bounds.high()) as f32);
+        State { theta1, theta2, ..State::HANGING }
     }
 
     #[inline(always)]
@@ -49,6 +51,7 @@ impl Task for Swingup {
         [1.0, 1.0, 1.0, 1.0, params.max_velocity1, params.max_velocity2]
     }
 
+    /// dm_control's `tolerance`: 0.1^(d²) at d metres beyond 0.2 m from the target.
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
@@ -57,26 +60,18 @@ impl Task for Swingup {
         _: V,
         _: V::Mask,
     ) -> V::Single {
-        tolerance::<A::Scalar, V>(seen, params).to_f32()
+        const RADIUS: f64 = 0.2;
+        // Up to 0.1 mm beyond, the nearest `f32` would be 1.
+        const BELOW_1: f64 = 1.0_f32.next_down() as f64;
+        let number = |x| V::splat(Real::from_f64(x));
+        let [_, [x, y]] = seen.positions(params);
+        let below = number(2.0) - y;
+        let distance = (x * x + below * below).map(Real::sqrt);
+        let beyond = distance - number(RADIUS);
+        let outside = exp2(beyond * beyond * number(-core::f64::consts::LOG2_10));
+        let outside = outside.saturate(number(BELOW_1));
+        distance.select_within(Real::from_f64(RADIUS), number(1.0), outside).to_f32()
     }
-}
-
-/// dm_control's `tolerance` of the distance from the tip to the target, 0.1^(d²) at d metres from
-/// its edge.
-#[inline(always)]
-fn tolerance<S: Real, V: Numbers<S>>(seen: &Seen<V>, params: &Params<V>) -> V {
-    const TARGET: f64 = 2.0;
-    const RADIUS: f64 = 0.2;
-    // Up to 0.1 mm beyond, the nearest `f32` would be 1.
-    const BELOW_1: f64 = 1.0_f32.next_down() as f64;
-    let number = |x| V::splat(S::from_f64(x));
-    let [_, [x, y]] = seen.positions(params);
-    let below = number(TARGET) - y;
-    let distance = (x * x + below * below).map(Real::sqrt);
-    let beyond = distance - number(RADIUS);
-    let outside = exp2(beyond * beyond * number(-core::f64::consts::LOG2_10));
-    let outside = outside.saturate(number(BELOW_1));
-    distance.select_within(S::from_f64(RADIUS), number(1.0), outside)
 }
 
 /// 2^x for x up to 0, for rewards, which are `f32`. Below −100, and for NaN, 2^−100.

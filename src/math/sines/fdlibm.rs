@@ -6,15 +6,12 @@
 
 use super::{HAS_F64, HAS_SIMD};
 use crate::math::lanes::Numbers;
-
-/// 1.5 × 2⁵²: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
-const MAGIC: f64 = 1.5 / f64::EPSILON;
+use crate::math::real::sealed::Sealed as _;
 
 /// `libm` computes where it reduces x in another way:
 ///
 /// - |y| > π/4 − 1e-5, where it finds n from the upper 32 bits of x;
 /// - |y| < 2⁻¹⁵ |x|, where it subtracts more digits of π/2, and so all |x| above 25,736.
-///
 #[inline(always)]
 pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
     /// π/2: its leading 33 bits, and the rest.
@@ -30,10 +27,10 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
     }
     if V::IS_ONE && x.all_within(largest) {
         // A branch is faster than the reduction, for which one number has to wait.
-        return x.map2(|x| reduced(MAGIC, x, 0.0));
+        return x.map2(|x| reduced(f64::MAGIC, x, 0.0));
     }
-    let shifted = x * c(core::f64::consts::FRAC_2_PI) + c(MAGIC);
-    let n = shifted - c(MAGIC);
+    let shifted = x * c(core::f64::consts::FRAC_2_PI) + c(f64::MAGIC);
+    let n = shifted - c(f64::MAGIC);
     let high = x - n * c(PI_2_HIGH);
     let low = n * c(PI_2_LOW);
     let y = high - low;
@@ -81,7 +78,7 @@ fn reduced(shifted: f64, y: f64, tail: f64) -> (f64, f64) {
     let cube = z * y;
     // `libm` has another order where it does not reduce x. The sum with the tail, which is 0 there,
     // keeps the sign of −0.
-    let rest = if shifted == MAGIC {
+    let rest = if shifted == f64::MAGIC {
         tail - cube * (S[0] + z * r)
     } else {
         (z * (0.5 * tail - cube * r) - tail) - cube * S[0]

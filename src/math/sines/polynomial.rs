@@ -1,6 +1,7 @@
 //! `f32` by two polynomials: for single-precision FPUs, WASM and SIMD.
 
 use crate::math::lanes::Numbers;
+use crate::math::real::sealed::Sealed as _;
 
 /// Cody-Waite reduction to the nearest multiple of π/2, then two polynomials. Two constants
 /// suffice: for
@@ -10,8 +11,6 @@ pub fn sin_cos<V: Numbers<f32>>(x: V) -> (V, V) {
     /// π/2: its leading 18 bits, and the rest.
     const PI_2_HIGH: f32 = f32::from_bits(0x3fc9_0fc0);
     const PI_2_LOW: f32 = (core::f64::consts::FRAC_PI_2 - PI_2_HIGH as f64) as f32;
-    /// 1.5 × 2²³: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
-    const MAGIC: f32 = 12_582_912.0;
     /// sin r = r + r³(S0 + S1 r² + S2 r⁴), error 1.8e-9. Minimax over |r| ≤ π/4, each coefficient
     /// rounded to `f32` before the next was fitted (`tests/data/polynomials.py`).
     const S: [f32; 3] =
@@ -21,8 +20,8 @@ pub fn sin_cos<V: Numbers<f32>>(x: V) -> (V, V) {
         [f32::from_bits(0xbeff_ffdd), f32::from_bits(0x3d2a_9fd5), f32::from_bits(0xbab2_3c11)];
 
     let c = V::splat;
-    let shifted = x * c(core::f32::consts::FRAC_2_PI) + c(MAGIC);
-    let multiple = shifted - c(MAGIC);
+    let shifted = x * c(core::f32::consts::FRAC_2_PI) + c(f32::MAGIC);
+    let multiple = shifted - c(f32::MAGIC);
     let r = (x - multiple * c(PI_2_HIGH)) - multiple * c(PI_2_LOW);
 
     let z = r * r;

@@ -2,20 +2,20 @@
 
 use core::f32::consts::{FRAC_1_PI, PI};
 
+use crate::math::real::sealed::Sealed as _;
+
 /// A table gives sine and cosine of the nearest multiple of π/16, and polynomials those of the
 /// remainder `r`. The addition theorem combines them.
 #[inline(always)]
 pub fn sin_cos(x: f32) -> (f32, f32) {
     const STEP: f32 = PI / 16.0;
-    /// 1.5 × 2²³: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
-    const MAGIC: f32 = 12_582_912.0;
     /// sin r = r + S r³, error 9.9e-9, and cos r = 1 + C r², error 6.6e-7: minimax over |r| ≤ π/32
     /// (`tests/data/polynomials.py`).
     const S: f32 = f32::from_bits(0xbe2a_985f);
     const C: f32 = f32::from_bits(0xbeff_d468);
 
-    let shifted = x * (16.0 * FRAC_1_PI) + MAGIC;
-    let multiple = shifted - MAGIC;
+    let shifted = x * (16.0 * FRAC_1_PI) + f32::MAGIC;
+    let multiple = shifted - f32::MAGIC;
     let r = x - multiple * STEP;
     let z = r * r;
     let sin = r + (r * z) * S;

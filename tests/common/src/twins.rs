@@ -59,13 +59,6 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
         self.assert_equal();
     }
 
-    /// Sets the bounds of initial states, and resets all.
-    pub fn set_bounds(&mut self, low: f64, high: f64) {
-        let bounds = ResetBounds::new(low, high).unwrap();
-        self.batch.set_reset_bounds(bounds);
-        self.reset(None, ResetOptions::default());
-    }
-
     /// Call it when the batch has reset those whose episode had ended.
     pub fn reset_ended(&mut self) {
         for (alone, ended) in self.alone.iter_mut().zip(&mut self.ended) {
@@ -182,7 +175,8 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
                 ..shared.batch.params_of(0).unwrap()
             });
             for twins in [&mut shared, &mut drawn] {
-                twins.set_bounds(-100.0, 100.0);
+                twins.batch.set_reset_bounds(ResetBounds::new(-100.0, 100.0).unwrap());
+                twins.reset(None, ResetOptions::default());
                 // After an episode's end the links turn over, which wraps angles.
                 twins.batch.set_autoreset(Autoreset::Disabled);
                 twins.swing(100);

@@ -24,6 +24,7 @@
 //! is the margin of the rounding test. One result in 320 is within the margin.
 
 use super::wide::{Fraction, octant_sine};
+use crate::math::real::sealed::Sealed as _;
 
 /// sin(i π/128): its leading 26 bits, and the rest.
 static SINES: [[f64; 2]; 320] = sines();
@@ -79,11 +80,9 @@ impl Angle {
             f64::from_bits(0x3d0a_308d_3131_8000),
             f64::from_bits(0x3a88_a2e0_3707_344a),
         ];
-        /// 1.5 × 2⁵²: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
-        const MAGIC: f64 = 6_755_399_441_055_744.0;
 
-        let shifted = x * STEPS + MAGIC;
-        let n = shifted - MAGIC;
+        let shifted = x * STEPS + f64::MAGIC;
+        let n = shifted - f64::MAGIC;
         let near = x - n * STEP[0];
         let middle = n * STEP[1];
         let b = near - middle;
