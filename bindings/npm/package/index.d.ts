@@ -34,7 +34,8 @@ export interface State {
 /**
  * The parameters, rounded to single precision. The lengths, masses, torque noise and `dynamics` of
  * a swing-up have the defaults below, the others those of dm_control. The task `"balance"` has
- * other defaults for `dt`, 0.02, and `torques`, [-10, 0, 10].
+ * other defaults for `dt`, 0.02, and `torques`, [-10, 0, 10]. Friction and `rotor` must be 0
+ * in "acrobot".
  */
 export interface Params {
   /** Length of link 1, m; above 0. Default: 1. */
@@ -67,15 +68,15 @@ export interface Params {
   torqueNoise: number;
   /** Equations of the book or of the NIPS paper: Gymnasium's `book_or_nips`. Default: "book". */
   dynamics: "book" | "nips";
-  /** Friction of the fixed joint, N m s/rad; 0 or more, and 0 in "acrobot". Default: 0. */
+  /** Friction of the fixed joint, N m s/rad; 0 or more. */
   friction1: number;
-  /** Friction between the links, N m s/rad; 0 or more, and 0 in "acrobot". Default: 0. */
+  /** Friction between the links, N m s/rad; 0 or more. */
   friction2: number;
-  /** Coulomb friction of the fixed joint, N m; 0 or more, and 0 in "acrobot". Default: 0. */
+  /** Coulomb friction of the fixed joint, N m; 0 or more. */
   coulomb1: number;
-  /** Coulomb friction between the links, N m; 0 or more, and 0 in "acrobot". Default: 0. */
+  /** Coulomb friction between the links, N m; 0 or more. */
   coulomb2: number;
-  /** What a geared rotor takes from the links' coupling, kg m²; finite, and 0 in "acrobot". */
+  /** What a geared rotor takes from the links' coupling, kg m²; finite. */
   rotor: number;
 }
 
