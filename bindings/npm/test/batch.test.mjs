@@ -100,12 +100,25 @@ for (const [name, mode, shared] of [
   });
 }
 
-test("resets draw parameters until the draws end", () => {
-  const draws = { inertia1: { logUniform: [0.5, 2] }, inertia2: "asBefore" };
+test("resets draw as NumPy does, after the initial state, alone and in a batch", () => {
+  const draws = {
+    mass2: [0.8, 1.2],
+    inertia1: { logUniform: [0.5, 2] },
+    inertia2: "asBefore",
+    gravity: { normal: [9.8, 0.1, 9.5, 10.1] },
+  };
   const batch = new Batch({ seed: 42, count: 3, draws });
-  const { inertia1, inertia2 } = batch.paramsOf(1);
-  assert.notEqual(inertia1, 1);
-  assert.equal(inertia2, inertia1);
+  const file = new URL("../../../tests/data/draws.csv", import.meta.url);
+  const rows = readFileSync(file, "utf8").trimEnd().split("\n").slice(1);
+  for (const row of rows) {
+    const [seed, child, ...drawn] = row.split(",");
+    const expected = drawn.map((number) => Math.fround(number));
+    const acrobot = new Acrobot({ seed: Number(seed), draws });
+    const params = child ? batch.paramsOf(Number(child)) : acrobot.params;
+    const state = child ? batch.stateOf(Number(child)) : acrobot.state;
+    const { mass2, inertia1, inertia2, gravity } = params;
+    assert.deepEqual([mass2, inertia1, inertia2, gravity, ...Object.values(state)], expected);
+  }
   batch.setDraws({});
   batch.setParamsOf(1, { mass2: 3 });
   batch.reset();

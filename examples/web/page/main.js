@@ -212,7 +212,8 @@ function start() {
     [dirty, updated] = [false, now];
     const charts = playing ? [CHARTS[turn++ % CHARTS.length]] : CHARTS;
     charts.forEach((show) => show(game));
-    const verdict = ({ steps, end }) => ({ goal: `Goal! ${steps} steps`, limit: "Out of time" })[end];
+    const verdict = ({ steps, end }) =>
+      ({ goal: `Goal! ${steps} steps`, limit: "Out of time" })[end];
     const other = rival.game;
     const texts = {
       "step": String(game.steps),
