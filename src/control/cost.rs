@@ -58,7 +58,7 @@ impl<S: Real> Cost<S> {
     /// Checks that all weights are finite and at least 0, and the margin above 0.
     pub(super) fn check(&self) -> Result<(), Error> {
         let ([angle1, angle2], [velocity1, velocity2]) = (self.angles, self.velocities);
-        for (name, weight, unit) in [
+        for &(name, weight, unit) in &[
             ("angles", angle1, "per s"),
             ("angles", angle2, "per s"),
             ("velocities", velocity1, "s/rad²"),
