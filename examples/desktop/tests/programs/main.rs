@@ -73,7 +73,7 @@ fn bad_arguments_are_rejected_with_a_reason() {
     let folder = Folder::new("rejected");
     for (line, reason) in [
         ("swing_up --load none.bin", "Error: none.bin"),
-        ("episode --seed 4x2", "got 'x' as character 2"),
+        ("trace --seed 4x2 1", "got 'x' as character 2"),
         ("episode --out no/a.svg", "Error: cannot write no/a.svg"),
         ("stay_up --episodes 0", "0 is not in 1.."),
         ("realaigym --tries 0", "0 is not in 1.."),
