@@ -225,7 +225,7 @@ class Estimator:
         return None if found is None else np.array(found)
 
     @property
-    def params(self) -> dict[str, float]:
+    def params(self) -> dict[str, Any]:
         """The parameters, estimated and known, as arguments of an environment."""
         return dict(self._native.params())
 
@@ -239,7 +239,7 @@ class Identified:
     ``weakest`` has the parts of the one that is told worst.
     """
 
-    params: dict[str, float]  #: arguments of an environment
+    params: dict[str, Any]  #: arguments of an environment, each a number
     values: dict[str, float]
     errors: dict[str, float]
     weakest: dict[str, float]
