@@ -22,6 +22,8 @@ export interface LearnerOptions {
   episodes?: number;
   /** The seed of the initial states. Default: random. */
   seed?: Seed;
+  /** An acrobot with the parameters to learn with, without friction. Default: Gymnasium's. */
+  acrobot?: Pick<Readable, "params">;
 }
 
 /** Q(λ) with tile coding and replay in 64 KiB: bit-identical to the native program `swing_up`. */

@@ -1,8 +1,8 @@
 // Policies, and a learner in a separate module. policies.d.ts describes the interface.
 
 import {
-  Opaque, checked, copied, decoded, instantiate, invalidSingle, isFinite32, positive, randomSeed,
-  seedWords,
+  Opaque, checked, copied, decoded, instantiate, invalid, invalidSingle, isFinite32, positive,
+  randomSeed, seedWords,
 } from "./wasm.js";
 
 export { moduleBytes, setModule } from "./wasm.js";
@@ -53,7 +53,9 @@ class Instance {
     if (length > BUFFER) throw new RangeError(`${rule}, got ${length}`);
     this.bytes(length).set(copy);
     const reason = load(length);
-    if (reason !== 0) throw new RangeError(decoded(this.bytes(reason)));
+    if (reason === 0) return;
+    const text = decoded(this.bytes(reason));
+    throw new RangeError(text.endsWith("got") ? `${text} ${length}` : text);
   }
 }
 
@@ -63,13 +65,21 @@ export class Learner extends Opaque {
 
   constructor(options = {}) {
     super();
-    const given = checked("options", options, ["episodes", "seed"]);
-    const { episodes = 2000, seed = randomSeed() } = given;
+    const given = checked("options", options, ["episodes", "seed", "acrobot"]);
+    const { episodes = 2000, seed = randomSeed(), acrobot } = given;
     positive("episodes", episodes);
     const words = seedWords(seed);
+    const params = Object.values(acrobot?.params ?? {}).flat();
+    const numbers = params.map((value) => (value === "book" ? 0 : value === "nips" ? 1 : value));
+    const data = [Uint32Array.from(words), Float32Array.from(numbers)];
+    const bytes = data.flatMap(({ buffer }) => [...new Uint8Array(buffer)]);
     this.#module = new Instance();
-    this.#module.bytes(4 * words.length).set(new Uint8Array(Uint32Array.from(words).buffer));
-    this.#training = this.#module.exports.begin(episodes, words.length);
+    this.#module.bytes(bytes.length).set(bytes);
+    this.#training = this.#module.exports.begin(episodes, words.length, numbers.length);
+    const isWhole = acrobot === undefined || numbers.length === 22;
+    if (this.#training === 0 || !isWhole) {
+      throw invalid("options.acrobot must be an Acrobot without friction and rotor", acrobot, []);
+    }
   }
 
   train() {

@@ -48,6 +48,18 @@ test("learnt weights are native ones, reach the goal, and each program loads the
   assert.equal(swingUp("--episodes", "0", "--load", own), null);
 });
 
+test("a learner learns with the parameters of an acrobot", () => {
+  const learnt = (params) => {
+    const acrobot = params && new Acrobot({ params });
+    const learner = new Learner({ episodes: 9, seed: 3, acrobot });
+    const returns = Array.from({ length: 9 }, () => learner.train());
+    return { returns: returns.join(), weights: learner.save() };
+  };
+  assert.deepEqual(learnt({}), learnt());
+  assert.equal(learnt({ torques: [0, 0, 0] }).returns, Array(9).fill(-500).join());
+  assert.notDeepEqual(learnt({ dynamics: "nips" }), learnt());
+});
+
 test("invalid weights and other arguments are rejected", () => {
   const learner = new Learner({ episodes: 5, seed: 1 });
   const good = learner.save();
@@ -66,9 +78,13 @@ test("invalid weights and other arguments are rejected", () => {
       ["undefined", () => bangBang()], ["undefined", () => bangBang(new Batch({ count: 1 }))]],
     ["TypeError", "acrobot.energy must be a finite number", ["undefined", () => energyLaw({})]],
     ["TypeError", "params.gravity must be a finite number", ["undefined", () => uprightEnergy({})]],
+    ["TypeError", "options.acrobot must be an Acrobot without friction and rotor",
+      ["[object Object]", () => new Learner({ acrobot: { params: { dt: 0.1 } } })],
+      ["[object Acrobot]", () => new Learner({ acrobot: new Acrobot({ task: "swingup" }) })]],
     ["RangeError", "episodes must be an integer from 1 to 2^32 - 1",
       ["0", () => new Learner({ episodes: 0 })]],
-    ["TypeError", "options must be among episodes, seed", ["sed", () => new Learner({ sed: 1 })]],
+    ["TypeError", "options must be among episodes, seed, acrobot",
+      ["sed", () => new Learner({ sed: 1 })]],
   ];
   assertRejected(rows, () => assert.deepEqual(learner.save(), good));
 });

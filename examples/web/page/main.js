@@ -378,7 +378,7 @@ function start() {
         option.textContent = "Learnt";
       }
     },
-    params: () => game.params,
+    game,
     drive() {
       choose("learnt");
       begin(game.seed);

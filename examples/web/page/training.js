@@ -5,7 +5,7 @@ import { download } from "./files.js";
 import { FULL, Game } from "./game.js";
 import { attempt } from "./parameters.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
-import { parseNumber, parseSeed } from "./settings.js";
+import { DEFAULTS, parseNumber, parseSeed } from "./settings.js";
 
 /** Gymnasium's threshold: a mean return of −100 over 100 episodes. */
 const WINDOW = 100;
@@ -25,7 +25,7 @@ function parseEpisodes(text) {
 }
 
 /** Calls `ready` with each learnt policy, and `drive` when the user wants to watch it. */
-export function trainingPanel(learner, { ready, drive, params }) {
+export function trainingPanel(learner, { ready, drive, game }) {
   let worker = null;
   let weights = null;
   /** From the first whole window on. Means of fewer episodes would be a spike. */
@@ -50,16 +50,19 @@ export function trainingPanel(learner, { ready, drive, params }) {
     return policy;
   };
 
-  /** Shows how the learnt policy does on the machine that is set. */
+  /** Shows how the learnt policy does on the machine that is set, and on Gymnasium's. */
   const compare = (policy) => {
-    let sum = 0;
-    for (let seed = 0n; seed < TRIES; seed++) {
-      const game = new Game(seed, params());
-      while (game.end === null) game.step(FULL * (policy.act(game.acrobot) - 1));
-      sum += game.return;
-    }
-    const mean = minus((sum / Number(TRIES)).toFixed(1));
-    $("elsewhere").textContent = `On the machine of the panel Physics: mean return ${mean}.`;
+    const [own, gymnasium] = [game.params, DEFAULTS].map((params) => {
+      let sum = 0;
+      for (let seed = 0n; seed < TRIES; seed++) {
+        const game = new Game(seed, params);
+        while (game.end === null) game.step(FULL * (policy.act(game.acrobot) - 1));
+        sum += game.return;
+      }
+      return minus((sum / Number(TRIES)).toFixed(1));
+    });
+    $("elsewhere").textContent = `Mean return of ${TRIES} episodes: ${own} on the machine that is ` +
+      `set, ${gymnasium} on Gymnasium's.`;
   };
 
   const stop = (message) => {
@@ -104,7 +107,7 @@ export function trainingPanel(learner, { ready, drive, params }) {
       stop();
       compare(learner);
     };
-    worker.postMessage({ seed, episodes });
+    worker.postMessage({ seed, episodes, params: game.acrobot.params });
     $("train").textContent = "Stop";
     $("training-status").textContent = "Training…";
   };

@@ -1,4 +1,4 @@
-// Trains outside the page's thread. It receives { seed, episodes } and posts reports. To stop the
+// Trains outside the page's thread. It receives { seed, episodes, params } and posts reports. To stop the
 // training, terminate the worker.
 
 import { Learner } from "./acrobot-rs/policies.js";
@@ -6,8 +6,8 @@ import { Learner } from "./acrobot-rs/policies.js";
 /** The time between two reports, ms. */
 const PERIOD = 150;
 
-onmessage = ({ data: { seed, episodes } }) => {
-  const learner = new Learner({ episodes, seed });
+onmessage = ({ data: { seed, episodes, params } }) => {
+  const learner = new Learner({ episodes, seed, acrobot: { params } });
   let returns = [];
   let reported = performance.now();
   for (let episode = 1; episode <= episodes; episode++) {

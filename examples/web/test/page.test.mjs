@@ -158,6 +158,14 @@ onPage("the worker trains the weights of the learner", {}, async (page) => {
   await says(page, "#train", /^Train$/);
   assert.match(await text(page, "#training-status"), /^130 of 130 episodes/);
   assert.ok((await downloaded(page, "#save")).equals(learnt(130, BigInt(seed))));
+  const [, own, gymnasium] = /: (.*) on the .* set, (.*) on G/.exec(await text(page, "#elsewhere"));
+  assert.equal(own, gymnasium);
+  // Without a torque no episode reaches the goal.
+  await page.fill("#torque", "0");
+  await page.fill("#episodes", "3");
+  await page.click("#train");
+  await says(page, "#training-status", /^3 of 3 episodes · mean return −500\.0 /);
+  await says(page, "#elsewhere", /: −500\.0 on the machine that is set, −\d/);
   await page.fill("#episodes", "1000000");
   await page.click("#train");
   await says(page, "#training-status", /^[1-9].* of 1,000,000 episodes/);

@@ -9,7 +9,8 @@ use std::cell::{Cell, RefCell};
 
 use acrobot::State;
 use acrobot::numpy::SeedSequence;
-use learners::{Budget, Env, Memory64, QLambda, training};
+use acrobot::physics::Dynamics;
+use learners::{Budget, Env, LoadError, Memory64, QLambda, training};
 use policy::Policy;
 
 pub struct Training {
@@ -40,15 +41,28 @@ fn write(bytes: impl IntoIterator<Item = u8>) -> usize {
 }
 
 /// Begins a training like that of `swing_up`. The seed is in the first `words` 32-bit words of the
-/// buffer, the lowest word first. An instance calls this once, because a learner keeps its memory.
+/// buffer, the lowest word first, and after it `numbers` of the parameters, the dynamics last.
+/// Returns `None` if an acrobot rejects these. An instance calls this once, because a learner keeps
+/// its memory.
 #[unsafe(no_mangle)]
-pub extern "C" fn begin(episodes: u32, words: usize) -> Box<Training> {
-    let seed: Vec<_> = BUFFER.with_borrow(|buffer| {
-        buffer.as_chunks().0.iter().take(words).copied().map(u32::from_le_bytes).collect()
+pub extern "C" fn begin(episodes: u32, words: usize, numbers: usize) -> Option<Box<Training>> {
+    let given: Vec<_> = BUFFER.with_borrow(|buffer| {
+        let words = buffer.as_chunks().0.iter().take(words + numbers);
+        words.copied().map(u32::from_le_bytes).collect()
     });
+    let (seed, numbers) = given.split_at_checked(words)?;
+    let mut env = training(SeedSequence::from_words(seed));
+    let mut params = *env.params();
+    for (number, word) in params.numbers_mut().into_iter().zip(numbers) {
+        *number = f32::from_bits(*word);
+    }
+    if numbers.last().is_some_and(|dynamics| *dynamics != 0) {
+        params.dynamics = Dynamics::Nips;
+    }
+    env.set_params(params).ok()?;
     let memory = Box::leak(Box::new(Memory64::EMPTY));
     let learner = QLambda::new(Budget::Episodes(episodes), memory);
-    Box::new(Training { learner, env: training(SeedSequence::from_words(&seed)) })
+    Some(Box::new(Training { learner, env }))
 }
 
 /// Trains for one episode. Returns its return.
@@ -68,7 +82,19 @@ pub extern "C" fn save(training: &Training) -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn load(training: &mut Training, len: usize) -> usize {
     let loaded = BUFFER.with_borrow(|buffer| training.learner.load(buffer.get(..len)?).err());
-    loaded.map_or(0, |error| write(error.to_string().into_bytes()))
+    loaded.map_or(0, |error| write(message(error).bytes()))
+}
+
+/// `to_string` would add 4 KB to the module. JavaScript adds the number that was got.
+fn message(error: LoadError) -> &'static str {
+    const { assert!(QLambda::<6144, 52>::BYTES == 49172) }
+    match error {
+        LoadError::Magic => "weights must begin with the bytes TILE and version 1",
+        LoadError::Size { .. } => "weights must have 49172 bytes, got",
+        LoadError::Features => "weights must be those of a learner with the same features",
+        LoadError::Checksum => "damaged weights: the checksum differs",
+        _ => "weights must be finite numbers",
+    }
 }
 
 /// The learnt policy's action in a state.
