@@ -61,8 +61,9 @@ export function trainingPanel(learner, { ready, drive, game }) {
       }
       return minus((sum / Number(TRIES)).toFixed(1));
     });
-    $("elsewhere").textContent = `Mean return of ${TRIES} episodes: ${own} on the machine that is ` +
-      `set, ${gymnasium} on Gymnasium's.`;
+    const title = `Mean return of ${TRIES} episodes`;
+    const text = `${title}: ${own} on the machine that is set, ${gymnasium} on Gymnasium's.`;
+    $("elsewhere").textContent = text;
   };
 
   const stop = (message) => {

@@ -1,5 +1,5 @@
-// Trains outside the page's thread. It receives { seed, episodes, params } and posts reports. To stop the
-// training, terminate the worker.
+// Trains outside the page's thread. It receives { seed, episodes, params } and posts reports. To
+// stop the training, terminate the worker.
 
 import { Learner } from "./acrobot-rs/policies.js";
 
