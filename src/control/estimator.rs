@@ -272,6 +272,7 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         add_outer(&mut of_state, self.torque, &b, &b);
         symmetrize(&mut of_state);
         let [angle, velocity] = IN_A_STEP.map(|x| A::Scalar::from_f64(x * x));
+        // At opt-level z a `for` loop would keep a check of the index, here and in `measure`.
         [angle, angle, velocity, velocity].into_iter().enumerate().for_each(|(i, noise)| {
             // Rounding may have made it negative.
             let own = if of_state[i][i] > zero { of_state[i][i] } else { zero };

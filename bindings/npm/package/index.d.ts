@@ -34,8 +34,8 @@ export interface State {
 /**
  * The parameters, rounded to single precision. The lengths, masses, torque noise and `dynamics` of
  * a swing-up have the defaults below, the others those of dm_control. The task `"balance"` has
- * other defaults for `dt`, 0.02, and `torques`, [-10, 0, 10]. Friction and `rotor` must be 0
- * in "acrobot".
+ * other defaults for `dt`, 0.02, and `torques`, [-10, 0, 10]. Friction and `rotor` are 0 by
+ * default, and must be in "acrobot".
  */
 export interface Params {
   /** Length of link 1, m; above 0. Default: 1. */

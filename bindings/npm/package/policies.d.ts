@@ -1,4 +1,4 @@
-import type { Action, Params, Seed, State } from "./index.js";
+import type { Acrobot, Action, Params, Seed, State } from "./index.js";
 
 /** What a policy reads: an `Acrobot` has it. */
 export interface Readable {
@@ -23,7 +23,7 @@ export interface LearnerOptions {
   /** The seed of the initial states. Default: random. */
   seed?: Seed;
   /** An acrobot with the parameters to learn with, without friction. Default: Gymnasium's. */
-  acrobot?: Pick<Readable, "params">;
+  acrobot?: Acrobot;
 }
 
 /** Q(λ) with tile coding and replay in 64 KiB: bit-identical to the native program `swing_up`. */

@@ -2,7 +2,7 @@
 
 import {
   Opaque, checked, copied, decoded, instantiate, invalid, invalidSingle, isFinite32, positive,
-  randomSeed, seedWords,
+  randomSeed, seedWords, tagOf,
 } from "./wasm.js";
 
 export { moduleBytes, setModule } from "./wasm.js";
@@ -53,9 +53,7 @@ class Instance {
     if (length > BUFFER) throw new RangeError(`${rule}, got ${length}`);
     this.bytes(length).set(copy);
     const reason = load(length);
-    if (reason === 0) return;
-    const text = decoded(this.bytes(reason));
-    throw new RangeError(text.endsWith("got") ? `${text} ${length}` : text);
+    if (reason !== 0) throw new RangeError(decoded(this.bytes(reason)));
   }
 }
 
@@ -76,8 +74,9 @@ export class Learner extends Opaque {
     this.#module = new Instance();
     this.#module.bytes(bytes.length).set(bytes);
     this.#training = this.#module.exports.begin(episodes, words.length, numbers.length);
-    const isWhole = acrobot === undefined || numbers.length === 22;
-    if (this.#training === 0 || !isWhole) {
+    // Only the parameters of an acrobot are all there, and in the order of the module.
+    const isAcrobot = acrobot === undefined || tagOf(acrobot) === "[object Acrobot]";
+    if (this.#training === 0 || !isAcrobot) {
       throw invalid("options.acrobot must be an Acrobot without friction and rotor", acrobot, []);
     }
   }
@@ -97,8 +96,11 @@ export class Learner extends Opaque {
   }
 
   load(weights) {
-    const { load } = this.#module.exports;
-    this.#module.load("weights", weights, (length) => load(this.#training, length));
+    const { load, weights_len: size } = this.#module.exports;
+    this.#module.load("weights", weights, (length) => {
+      if (length === size()) return load(this.#training, length);
+      throw new RangeError(`weights must have ${size()} bytes, got ${length}`);
+    });
   }
 }
 

@@ -73,7 +73,7 @@ export function decoded(utf8) {
 export const camelCase = (name) =>
   name.replace(".joint", "").replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 
-const tagOf = (value) => Object.prototype.toString.call(value);
+export const tagOf = (value) => Object.prototype.toString.call(value);
 
 /** An object with its data in private fields. Vue makes no proxies of it, which have none. */
 export class Opaque {

@@ -59,9 +59,17 @@ test("a plan is improved in place for other weights and another start", () => {
   assert.equal(plan.states[0], Math.fround(0.05));
 });
 
-test("linear models are those of a step and of the motion", () => {
+test("linear models are derivatives of a step and of the motion", () => {
   const [at, params] = [state(0.4, -0.3, 1, 2), { dt: 0.05, dynamics: "nips" }];
-  const { b } = linearizeStep(at, 0.5, params);
+  const acrobot = new Acrobot({ params });
+  const after = (dtheta1, torque) => {
+    acrobot.state = { ...at, dtheta1 };
+    acrobot.stepTorque(torque);
+    return acrobot.state.theta2;
+  };
+  const { a, b } = linearizeStep(at, 0.5, params);
+  assert.ok(Math.abs((after(1.1, 0.5) - after(0.9, 0.5)) / 0.2 - a[1][2]) < 1e-4);
+  assert.ok(Math.abs((after(1, 1.5) - after(1, -0.5)) / 2 - b[1]) < 1e-4);
   const rates = linearize(at, 0.5, params);
   assert.deepEqual([...rates.a[1], rates.b[1]], [0, 0, 0, 1, 0]);
   assert.ok(Math.abs(b[3] / 0.05 - rates.b[3]) < 0.05);

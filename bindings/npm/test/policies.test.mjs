@@ -79,7 +79,7 @@ test("invalid weights and other arguments are rejected", () => {
     ["TypeError", "acrobot.energy must be a finite number", ["undefined", () => energyLaw({})]],
     ["TypeError", "params.gravity must be a finite number", ["undefined", () => uprightEnergy({})]],
     ["TypeError", "options.acrobot must be an Acrobot without friction and rotor",
-      ["[object Object]", () => new Learner({ acrobot: { params: { dt: 0.1 } } })],
+      ["[object Object]", () => new Learner({ acrobot: { params: new Acrobot().params } })],
       ["[object Acrobot]", () => new Learner({ acrobot: new Acrobot({ task: "swingup" }) })]],
     ["RangeError", "episodes must be an integer from 1 to 2^32 - 1",
       ["0", () => new Learner({ episodes: 0 })]],

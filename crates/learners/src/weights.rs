@@ -84,18 +84,28 @@ pub enum LoadError {
     NotFinite(usize),
 }
 
+impl LoadError {
+    /// The text without its numbers, whose formatting takes 4 KB of a WebAssembly module.
+    #[must_use]
+    pub const fn message(&self) -> &'static str {
+        match self {
+            Self::Magic => "weights must begin with the bytes TILE and version 1",
+            Self::Size { .. } => "weights must have the learner's number of bytes",
+            Self::Features => "weights must be those of a learner with the same features",
+            Self::Checksum => "damaged weights: the checksum differs",
+            Self::NotFinite(_) => "weights must be finite numbers",
+        }
+    }
+}
+
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Magic => write!(f, "weights must begin with the bytes TILE and version 1"),
             Self::Size { found, expected } => {
                 write!(f, "weights must have {expected} bytes, got {found}")
             }
-            Self::Features => {
-                write!(f, "weights must be those of a learner with the same features")
-            }
-            Self::Checksum => write!(f, "damaged weights: the checksum differs"),
             Self::NotFinite(index) => write!(f, "weight {index} must be a finite number"),
+            _ => f.write_str(self.message()),
         }
     }
 }

@@ -301,6 +301,9 @@ function start() {
     if (playing) say(player());
   };
   $("policy").onchange = ({ target }) => select(target.value);
+  for (const option of $("policy").options) {
+    if (!["keys", "link"].includes(option.value)) $("rival").append(option.cloneNode(true));
+  }
   $("rival").onchange = ({ target: { value } }) => {
     begin(game.seed);
     const name = $("rival").selectedOptions[0].textContent;

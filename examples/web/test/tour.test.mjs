@@ -48,6 +48,20 @@ for (const [machine, settings] of [
   });
 }
 
+onPage("noise acts on the motor, and blinds the planner", {}, async (page) => {
+  await paused(page, 42);
+  await page.fill("#noise", "0.5");
+  await press(page, [1, 1]);
+  const { levels } = await linked(page);
+  assert.ok(levels[0] !== levels[1], `${levels}`);
+  await page.selectOption("#machine", "Gymnasium, 5 N m");
+  await page.click("#balance");
+  await page.selectOption("#pace", "4");
+  await holds(page);
+  await page.fill("#encoders", "0.5");
+  await says(page, "#return", /^0\.0 s$/);
+});
+
 onPage("another acrobot is pulled, too, and an animation is saved", {}, async (page) => {
   await paused(page, 42);
   await page.selectOption("#rival", "bang_bang");

@@ -10,7 +10,7 @@ use std::cell::{Cell, RefCell};
 use acrobot::State;
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::Dynamics;
-use learners::{Budget, Env, LoadError, Memory64, QLambda, training};
+use learners::{Budget, Env, Memory64, QLambda, training};
 use policy::Policy;
 
 pub struct Training {
@@ -82,19 +82,13 @@ pub extern "C" fn save(training: &Training) -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn load(training: &mut Training, len: usize) -> usize {
     let loaded = BUFFER.with_borrow(|buffer| training.learner.load(buffer.get(..len)?).err());
-    loaded.map_or(0, |error| write(message(error).bytes()))
+    loaded.map_or(0, |error| write(error.message().bytes()))
 }
 
-/// `to_string` would add 4 KB to the module. JavaScript adds the number that was got.
-fn message(error: LoadError) -> &'static str {
-    const { assert!(QLambda::<6144, 52>::BYTES == 49172) }
-    match error {
-        LoadError::Magic => "weights must begin with the bytes TILE and version 1",
-        LoadError::Size { .. } => "weights must have 49172 bytes, got",
-        LoadError::Features => "weights must be those of a learner with the same features",
-        LoadError::Checksum => "damaged weights: the checksum differs",
-        _ => "weights must be finite numbers",
-    }
+/// The length of the weights.
+#[unsafe(no_mangle)]
+pub extern "C" fn weights_len() -> usize {
+    QLambda::<6144, 52>::BYTES
 }
 
 /// The learnt policy's action in a state.
