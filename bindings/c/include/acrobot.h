@@ -34,7 +34,7 @@
 #define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * (48 + 64))
 #endif
 
-// Of the rest, CI compares each night all but the comments with the library's source, by cbindgen.
+// Each night CI compares the rest, except its comments, with the library's source, by cbindgen.
 
 // Action 0: −1 N m by default.
 #define ACROBOT_ACTION_NEGATIVE 0
