@@ -16,8 +16,10 @@ use rlevo_environments::classic::acrobot::{Acrobot as RlevoAcrobot, AcrobotActio
 /// Plays a number of steps and returns how many episodes ended.
 type Implementation = Box<dyn FnMut(usize) -> usize>;
 
-/// The name of each implementation, its package, and how to make it.
-const IMPLEMENTATIONS: [(&str, &str, fn() -> Implementation); 3] = [
+/// The name of an implementation, its package, and how to make it.
+type Row = (&'static str, &'static str, fn() -> Implementation);
+
+const IMPLEMENTATIONS: [Row; 3] = [
     ("fast", "acrobot", fast),
     ("batch", "acrobot", batch),
     ("rlevo", "rlevo-environments", rlevo),
