@@ -55,7 +55,7 @@ export async function launch(engine) {
     evaluate,
     waitForFunction: async (code, argument) => {
       for (let tries = 0; !(await evaluate(code, argument)); tries++) {
-        if (tries === 400) throw new Error(`never: ${code}`);
+        if (tries === 100) throw new Error(`never: ${code}`);
         await setTimeout(50);
       }
     },
