@@ -1,135 +1,100 @@
 //! Counts the instructions of a step for CI. callgrind gives the same count in every run.
 //!
 //! ```text
-//! cargo install --locked gungraun-runner@0.20.0    # and the system's valgrind
-//! cargo bench -p benches --bench instructions
+//! cargo bench -p benches --bench instructions    # needs the system's valgrind
 //! ```
 //!
 //! It fails if a count exceeds its limit: the measured count plus 5 % for new compilers. It needs
 //! x86-64 with AVX2; valgrind does not support AVX-512.
 
+use std::env;
 use std::hint::black_box;
+use std::process::Command;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Reference};
-use acrobot::batch::SimdLevel;
+use acrobot::batch::SimdLevel::{self, Avx2, Baseline};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use benches::Play;
-use gungraun::{
-    Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
-};
 
 /// About two episodes of a random policy, with their resets.
 const STEPS: usize = 1000;
 const ACROBOTS: usize = 64;
 
-/// Limits each step of each acrobot to this many instructions.
-fn limit(instructions: f64, acrobots: usize) -> LibraryBenchmarkConfig {
-    let limit = (instructions * 1.05 * (acrobots * STEPS) as f64) as u64;
-    let mut callgrind = Callgrind::with_args(["cache-sim=no"]);
-    callgrind.hard_limits([(EventKind::Ir, limit)]);
-    let mut config = LibraryBenchmarkConfig::default();
-    config.tool(callgrind);
-    config
+/// What is counted: its name, its instructions per step of an acrobot, and the program.
+const COUNTS: &[(&str, f64, fn())] = &[
+    ("Reference", 1888.0, alone::<Reference>),
+    ("Portable", 936.0, alone::<Portable>),
+    ("Fast", 647.0, alone::<Fast>),
+    ("Micro", 491.0, alone::<Micro>),
+    ("batch of Fast", 248.0, || batch::<Fast>(Baseline, false)),
+    ("batch of Fast, AVX2", 113.0, || batch::<Fast>(Avx2, false)),
+    ("batch of Fast, observed", 265.0, || batch::<Fast>(Baseline, true)),
+    ("batch of Fast, observed, AVX2", 123.0, || batch::<Fast>(Avx2, true)),
+    ("batch of Portable", 824.0, || batch::<Portable>(Baseline, false)),
+    ("batch of Portable, AVX2", 350.0, || batch::<Portable>(Avx2, false)),
+    // It compiles as long as the others together, so CI counts it at night.
+    #[cfg(feature = "long")]
+    ("batch of Reference, AVX2", 712.0, || batch::<Reference>(Avx2, false)),
+];
+
+/// callgrind counts this function and what it calls, without what comes before and after.
+#[inline(never)]
+fn counted(steps: &mut dyn FnMut()) {
+    steps();
 }
 
-type Alone<A> = (TimeLimit<Acrobot<A>>, Vec<Action>);
-
-fn alone<A: Arithmetic>() -> Alone<A> {
+fn alone<A: Arithmetic>() {
     let mut rng = Pcg64::new(0);
-    let actions = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
-    (TimeLimit::of(Acrobot::new(0)), actions)
-}
-
-fn batch<A: Arithmetic>(level: SimdLevel) -> Play<A> {
-    assert!(level.is_available(), "this machine has no {level:?}");
-    let mut play = Play::new(ACROBOTS);
-    play.batch.set_simd_level(level);
-    play
-}
-
-#[inline(always)]
-fn play_alone<A: Arithmetic>((mut acrobot, actions): Alone<A>) -> Alone<A> {
-    for &action in &actions {
-        if black_box(acrobot.step(action)).done() {
-            acrobot.reset();
+    let actions: Vec<_> = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
+    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(0));
+    counted(&mut || {
+        for &action in &actions {
+            if black_box(acrobot.step(action)).done() {
+                acrobot.reset();
+            }
         }
+    });
+}
+
+fn batch<A: Arithmetic>(level: SimdLevel, observe: bool) {
+    assert!(level.is_available(), "this machine has no {level:?}");
+    let mut play = Play::<A>::new(ACROBOTS);
+    play.batch.set_simd_level(level);
+    counted(&mut || {
+        for _ in 0..STEPS {
+            play.play(observe);
+        }
+    });
+}
+
+/// The instructions of a program, which this program runs when it is called with its name.
+fn count(name: &str) -> f64 {
+    let callgrind = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg("--toggle-collect=instructions::counted*")
+        .arg(env::current_exe().expect("the path of this program"))
+        .arg(name)
+        .output()
+        .expect("valgrind runs");
+    let log = String::from_utf8_lossy(&callgrind.stderr);
+    let count = log.split("Collected : ").nth(1).and_then(|rest| rest.lines().next()?.parse().ok());
+    count
+        .filter(|&count| count > 0.0 && callgrind.status.success())
+        .unwrap_or_else(|| panic!("{log}"))
+}
+
+fn main() {
+    let argument = env::args().nth(1).expect("a name, or --bench from Cargo");
+    if let Some((_, _, program)) = COUNTS.iter().find(|(name, ..)| *name == argument) {
+        return program();
     }
-    (acrobot, actions)
-}
-
-#[inline(always)]
-fn play_batch<A: Arithmetic>(mut play: Play<A>, observe: bool) -> Play<A> {
-    for _ in 0..STEPS {
-        play.play(observe);
+    let mut exceeded = false;
+    for (name, expected, _) in COUNTS {
+        let acrobots = if name.starts_with("batch") { ACROBOTS } else { 1 };
+        let instructions = count(name) / (STEPS * acrobots) as f64;
+        println!("{name:30} {instructions:6.1} instructions a step, expected {expected}");
+        exceeded |= instructions > expected * 1.05;
     }
-    play
+    assert!(!exceeded, "a count exceeds what is expected by more than 5 %");
 }
-
-#[library_benchmark(config = limit(1888.0, 1), setup = alone::<Reference>)]
-fn reference(alone: Alone<Reference>) -> Alone<Reference> {
-    play_alone(alone)
-}
-
-#[library_benchmark(config = limit(936.0, 1), setup = alone::<Portable>)]
-fn portable(alone: Alone<Portable>) -> Alone<Portable> {
-    play_alone(alone)
-}
-
-#[library_benchmark(config = limit(647.0, 1), setup = alone::<Fast>)]
-fn fast(alone: Alone<Fast>) -> Alone<Fast> {
-    play_alone(alone)
-}
-
-#[library_benchmark(config = limit(491.0, 1), setup = alone::<Micro>)]
-fn micro(alone: Alone<Micro>) -> Alone<Micro> {
-    play_alone(alone)
-}
-
-#[library_benchmark(setup = batch::<Fast>)]
-#[bench::baseline(args = (SimdLevel::Baseline), config = limit(248.0, ACROBOTS))]
-#[bench::avx2(args = (SimdLevel::Avx2), config = limit(113.0, ACROBOTS))]
-fn batch_fast(play: Play<Fast>) -> Play<Fast> {
-    play_batch(play, false)
-}
-
-#[library_benchmark(setup = batch::<Fast>)]
-#[bench::baseline(args = (SimdLevel::Baseline), config = limit(265.0, ACROBOTS))]
-#[bench::avx2(args = (SimdLevel::Avx2), config = limit(123.0, ACROBOTS))]
-fn batch_fast_with_observations(play: Play<Fast>) -> Play<Fast> {
-    play_batch(play, true)
-}
-
-#[library_benchmark(setup = batch::<Portable>)]
-#[bench::baseline(args = (SimdLevel::Baseline), config = limit(824.0, ACROBOTS))]
-#[bench::avx2(args = (SimdLevel::Avx2), config = limit(350.0, ACROBOTS))]
-fn batch_portable(play: Play<Portable>) -> Play<Portable> {
-    play_batch(play, false)
-}
-
-// It compiles as long as the others together, so CI counts it at night.
-#[cfg(feature = "long")]
-#[library_benchmark(setup = batch::<Reference>)]
-#[bench::avx2(args = (SimdLevel::Avx2), config = limit(712.0, ACROBOTS))]
-fn batch_reference(play: Play<Reference>) -> Play<Reference> {
-    play_batch(play, false)
-}
-
-library_benchmark_group!(
-    name = steps,
-    benchmarks = [
-        reference,
-        portable,
-        fast,
-        micro,
-        batch_fast,
-        batch_fast_with_observations,
-        batch_portable
-    ]
-);
-#[cfg(feature = "long")]
-library_benchmark_group!(name = long, benchmarks = [batch_reference]);
-#[cfg(feature = "long")]
-main!(library_benchmark_groups = [steps, long]);
-#[cfg(not(feature = "long"))]
-main!(library_benchmark_groups = steps);
