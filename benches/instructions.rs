@@ -23,19 +23,19 @@ const ACROBOTS: usize = 64;
 
 /// What is counted: its name, its instructions per step of an acrobot, and the program.
 const COUNTS: &[(&str, f64, fn())] = &[
-    ("Reference", 1888.0, alone::<Reference>),
-    ("Portable", 936.0, alone::<Portable>),
+    ("Reference", 1870.0, alone::<Reference>),
+    ("Portable", 906.0, alone::<Portable>),
     ("Fast", 647.0, alone::<Fast>),
     ("Micro", 491.0, alone::<Micro>),
-    ("batch of Fast", 248.0, || batch::<Fast>(Baseline, false)),
-    ("batch of Fast, AVX2", 113.0, || batch::<Fast>(Avx2, false)),
-    ("batch of Fast, observed", 265.0, || batch::<Fast>(Baseline, true)),
-    ("batch of Fast, observed, AVX2", 123.0, || batch::<Fast>(Avx2, true)),
-    ("batch of Portable", 824.0, || batch::<Portable>(Baseline, false)),
-    ("batch of Portable, AVX2", 350.0, || batch::<Portable>(Avx2, false)),
+    ("batch of Fast", 246.0, || batch::<Fast>(Baseline, false)),
+    ("batch of Fast, AVX2", 111.0, || batch::<Fast>(Avx2, false)),
+    ("batch of Fast, observed", 263.0, || batch::<Fast>(Baseline, true)),
+    ("batch of Fast, observed, AVX2", 121.0, || batch::<Fast>(Avx2, true)),
+    ("batch of Portable", 816.0, || batch::<Portable>(Baseline, false)),
+    ("batch of Portable, AVX2", 345.0, || batch::<Portable>(Avx2, false)),
     // It compiles as long as the others together, so CI counts it at night.
     #[cfg(feature = "long")]
-    ("batch of Reference, AVX2", 712.0, || batch::<Reference>(Avx2, false)),
+    ("batch of Reference, AVX2", 676.0, || batch::<Reference>(Avx2, false)),
 ];
 
 /// callgrind counts this function and what it calls, without what comes before and after.
@@ -89,12 +89,14 @@ fn main() {
     if let Some((_, _, program)) = COUNTS.iter().find(|(name, ..)| *name == argument) {
         return program();
     }
-    let mut exceeded = false;
+    let mut exceeded = Vec::new();
     for (name, expected, _) in COUNTS {
         let acrobots = if name.starts_with("batch") { ACROBOTS } else { 1 };
         let instructions = count(name) / (STEPS * acrobots) as f64;
         println!("{name:30} {instructions:6.1} instructions a step, expected {expected}");
-        exceeded |= instructions > expected * 1.05;
+        if instructions > expected * 1.05 {
+            exceeded.push(name);
+        }
     }
-    assert!(!exceeded, "a count exceeds what is expected by more than 5 %");
+    assert!(exceeded.is_empty(), "more than 5 % above what is expected: {exceeded:?}");
 }
