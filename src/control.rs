@@ -20,6 +20,7 @@ mod planner;
 mod recovery;
 mod regulator;
 mod tries;
+mod units;
 
 pub use cost::Cost;
 pub use deviation::difference;

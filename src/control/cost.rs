@@ -1,5 +1,6 @@
 //! What a plan costs.
 
+use super::units::Units;
 use crate::error::{Error, Range};
 use crate::math::{Real, SinCos};
 use crate::physics::{Params, positions};
@@ -32,26 +33,37 @@ pub struct Cost<S = f64> {
     pub arrival: S,
 }
 
-/// The power, W, within which its absolute value is smooth.
-const SMOOTH: f64 = 0.1;
-/// What a velocity beyond its bound costs, s/rad².
-const BEYOND: f64 = 10.0;
+/// The power within which its absolute value is smooth, in units of the largest torque and the
+/// machine's time.
+const SMOOTH: f64 = 0.02;
+/// What a velocity beyond its bound costs, in units of the machine's time.
+const BEYOND: f64 = 20.0;
+/// The weights of the torque and of the time below, in the same units, and of the arrival.
+const TORQUE: f64 = 0.1;
+const BELOW: f64 = 0.4;
+const ARRIVAL: f64 = 20.0;
+/// The first damping, which is added to the curvature of the cost by a torque, and the least
+/// curvature, in the same units.
+const DAMPING: f64 = 0.1;
+const LEAST: f64 = 1e-10;
 
 impl<S: Real> Cost<S> {
     /// Weights with which most tries of a swing-up succeed: the acrobot gets up early, with little
-    /// torque. The height is that of the upright tip, the margin a tenth of it.
-    pub fn new(params: &Params<S>) -> Self {
+    /// torque. The height is that of the upright tip, the margin a tenth of it. `limit` is the
+    /// largest torque, N m.
+    pub fn new(params: &Params<S>, limit: S) -> Self {
+        let Units { time, torque, .. } = Units::new(params, limit);
         let height = params.length1 + params.length2;
         Self {
             angles: [S::ZERO; 2],
             velocities: [S::ZERO; 2],
-            torque: S::from_f64(0.1),
+            torque: S::from_f64(TORQUE / (time * torque * torque)),
             torque_change: S::ZERO,
             power: S::ZERO,
-            below: S::from_f64(2.0),
+            below: S::from_f64(BELOW / time),
             height,
             margin: height * S::from_f64(0.1),
-            arrival: S::from_f64(20.0),
+            arrival: S::from_f64(ARRIVAL),
         }
     }
 
@@ -83,10 +95,15 @@ pub(super) struct Weights<S> {
     /// Velocities that no plan may reach, rad/s, and what exceeding them costs, s²/rad².
     pub(super) bounds: [S; 2],
     beyond: S,
+    /// The power, W, within which its absolute value is smooth.
+    smooth: S,
+    /// The first damping, and the least curvature by a torque, 1/(N m)².
+    pub(super) damping: S,
+    pub(super) least: S,
 }
 
 impl<S: Real> Weights<S> {
-    pub(super) fn new(cost: Cost<S>, dt: S, bounds: [S; 2]) -> Self {
+    pub(super) fn new(cost: Cost<S>, dt: S, bounds: [S; 2], units: Units) -> Self {
         let times = |[x, y]: [S; 2]| [x * dt, y * dt];
         let cost = Cost {
             angles: times(cost.angles),
@@ -96,7 +113,16 @@ impl<S: Real> Weights<S> {
             below: cost.below * dt,
             ..cost
         };
-        Self { cost, bounds, beyond: dt * S::from_f64(BEYOND) }
+        let Units { time, torque, .. } = units;
+        let curvature = dt.to_f64() / (time * torque * torque);
+        Self {
+            cost,
+            bounds,
+            beyond: dt * S::from_f64(BEYOND * time),
+            smooth: S::from_f64(SMOOTH * torque / time),
+            damping: S::from_f64(DAMPING * curvature),
+            least: S::from_f64(LEAST * curvature),
+        }
     }
 
     /// The weights of the torque's change and of the arrival.
@@ -131,7 +157,7 @@ impl<S: Real> Weights<S> {
             + velocity1 * (dtheta1 * dtheta1)
             + velocity2 * (dtheta2 * dtheta2)
             + cost.torque * (torque * torque)
-            + cost.power * (power * power / (power.abs() + S::from_f64(SMOOTH)))
+            + cost.power * (power * power / (power.abs() + self.smooth))
             + cost.below * (square / (S::ONE + square))
             + self.beyond * (beyond1 * beyond1 + beyond2 * beyond2)
     }
@@ -153,8 +179,8 @@ impl<S: Real> Weights<S> {
         let [bound1, bound2] = self.bounds;
 
         let power = dtheta2 * torque;
-        let inverse = S::ONE / (power.abs() + S::from_f64(SMOOTH));
-        let by_power = cost.power * (power * inverse * (S::ONE + S::from_f64(SMOOTH) * inverse));
+        let inverse = S::ONE / (power.abs() + self.smooth);
+        let by_power = cost.power * (power * inverse * (S::ONE + self.smooth * inverse));
         let weight = cost.power * inverse;
 
         let [[elbow, _], [tip, height]] = positions(params, sin_cos);

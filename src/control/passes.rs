@@ -141,7 +141,8 @@ impl<A: Arithmetic, V: Numbers<A::Scalar>> Kernel for Backward<'_, A, V> {
         let (len, dampings) = (self.len, self.damping);
         let zero = V::splat(A::Scalar::ZERO);
         let mut to_go = [zero; 20];
-        let mut least = V::splat(A::Scalar::ONE);
+        let most = A::Scalar::from_f64(f64::INFINITY);
+        let mut least = V::splat(most);
         let mut index = A::Scalar::from_f64(self.knots.len() as f64);
         let mut knots = self.knots;
         while let Some((knot, earlier)) = knots.split_last_mut() {
@@ -152,7 +153,7 @@ impl<A: Arithmetic, V: Numbers<A::Scalar>> Kernel for Backward<'_, A, V> {
                 if index == len.lane(i) {
                     let end = lanes(self.ends, i);
                     set_lanes(&mut to_go, i, recovery.arrival_slopes(arrival, end));
-                    least.set_lane(i, A::Scalar::ONE);
+                    least.set_lane(i, most);
                 }
             }
             let mut changed = *knot;

@@ -17,11 +17,12 @@ use super::deviation::difference;
 use super::error::ControlError;
 use super::linearize::LinearModel;
 use super::linearize_step::linearize_step;
-use super::matrix::{dot, identity, transpose};
+use super::matrix::{check_finite, dot, spread, transpose};
 use super::passes::Machine;
 use super::plan::{Knot, NoPlan};
 use super::recovery::{Recovery, is_below, is_near};
 use super::tries::{self, Try};
+use super::units::Units;
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::sealed::Sealed as _;
@@ -33,15 +34,13 @@ use rand_core::Rng;
 /// A plan may take so many iterations.
 const ITERATIONS: u32 = 150;
 
-/// The most steps of a simulation of the regulator: after a plan, and before a decision.
-const AFTER_A_PLAN: u32 = 2000;
-const AHEAD: u32 = 200;
-
-/// A guess holds a random torque for this time, s.
-const HOLD: f64 = 0.25;
-/// The largest gain with which a guess pumps energy, s/rad, and that without a plan.
-const PUMP: f64 = 3.0;
-const STEADY_PUMP: f64 = 0.2;
+/// A guess holds a random torque for this time, in units of the machine.
+const HOLD: f64 = 0.6;
+/// The largest gain with which a guess pumps energy, and that without a plan, in the same units.
+const PUMP: f64 = 60.0;
+const STEADY_PUMP: f64 = 2.0;
+/// Without a plan, the simulation of the regulator takes about so many steps in a unit of time.
+const FINE: f64 = 50.0;
 
 /// Plans swing-ups for one machine: [an example](crate::guide::control#swing-up-by-a-plan).
 ///
@@ -54,6 +53,12 @@ pub struct Planner<A: Arithmetic> {
     weights: Weights<A::Scalar>,
     /// The energy of standing upright, J.
     upright: A::Scalar,
+    /// How long a guess holds a torque, s.
+    hold: f64,
+    /// The gain that pumps energy, s/rad: a unit of the machine.
+    pump: f64,
+    /// The parameters for a simulation before a decision, whose steps can be longer.
+    ahead: Params<A::Scalar>,
     is_holding: bool,
     level: SimdLevel,
 }
@@ -66,7 +71,9 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
     pub fn new(params: Params<A::Scalar>, limit: A::Scalar) -> Result<Self, ControlError> {
-        Self::with_cost(params, limit, Cost::new(&params))
+        Range::AboveZero.check("the largest torque", limit.to_f64(), "N m")?;
+        Pendulum::<A>::new(params, State::UPRIGHT)?;
+        Self::with_cost(params, limit, Cost::new(&params, limit))
     }
 
     /// As [`new`](Self::new), with the weights of what a plan costs.
@@ -82,13 +89,20 @@ impl<A: Arithmetic> Planner<A> {
     ) -> Result<Self, ControlError> {
         cost.check()?;
         let recovery = Recovery::new::<A>(params, limit)?;
+        let units = Units::new(&params, limit);
         let infinity = A::Scalar::from_f64(f64::INFINITY);
         let bounds = [&mut params.max_velocity1, &mut params.max_velocity2];
         let bounds = bounds.map(|bound| replace(bound, infinity));
         let model = Pendulum::new_unchecked(params, State::UPRIGHT);
+        let steps = units.time / (FINE * params.dt.to_f64());
+        let steps = if steps > 1.0 { steps as u32 } else { 1 };
+        let ahead = Params { dt: params.dt * A::Scalar::from_f64(f64::from(steps)), ..params };
         Ok(Self {
             recovery,
-            weights: Weights::new(cost, params.dt, bounds),
+            weights: Weights::new(cost, params.dt, bounds, units),
+            hold: HOLD * units.time,
+            pump: units.torque * units.time / units.force,
+            ahead,
             upright: model.energy(),
             model,
             is_holding: false,
@@ -104,6 +118,7 @@ impl<A: Arithmetic> Planner<A> {
         let [max_velocity1, max_velocity2] = replace(&mut self.weights.bounds, [infinity; 2]);
         let params = Params { max_velocity1, max_velocity2, ..*self.model.params() };
         self.model = Pendulum::new_unchecked(params, State::UPRIGHT);
+        self.ahead = Params { max_velocity1, max_velocity2, ..self.ahead };
         self
     }
 
@@ -152,12 +167,13 @@ impl<A: Arithmetic> Planner<A> {
     ) -> Result<(), Error> {
         let number = A::Scalar::from_f64;
         let strength = uniform(rng, 0.0, 1.0);
-        let gain: A::Scalar = number(PUMP * strength * strength * strength);
+        let most = PUMP * self.pump;
+        let gain: A::Scalar = number(most * strength * strength * strength);
         let noise = uniform(rng, 0.1, 0.75) * self.recovery.limit.to_f64();
-        let (mut push, mut held) = (A::Scalar::ZERO, HOLD);
+        let (mut push, mut held) = (A::Scalar::ZERO, self.hold);
         self.model.set_state(start)?;
         for knot in plan {
-            if held >= HOLD {
+            if held >= self.hold {
                 push = number(uniform(rng, -noise, noise));
                 held = 0.0;
             }
@@ -239,12 +255,13 @@ impl<A: Arithmetic> Planner<A> {
     /// upright. Torques at their bound get some, too.
     fn track(&mut self, plan: &mut [Knot<A::Scalar>]) -> Result<(), ControlError> {
         let one = A::Scalar::ONE;
-        let mut cost = self.recovery.regulator.cost_to_go;
+        let (weights, torque_weight) = (self.recovery.weights, self.recovery.torque_weight);
+        let mut cost = self.recovery.cost_to_go;
         for knot in plan.iter_mut().rev() {
             self.model.set_state(knot.state)?;
             let LinearModel { a, b } = linearize_step(&self.model, knot.torque)?;
             let cost_b = cost.map(|row| dot(row, b));
-            let divisor = dot(b, cost_b) + one;
+            let divisor = dot(b, cost_b) + torque_weight;
             let mut columns = transpose(&a);
             knot.gain = columns.map(|column| -(dot(column, cost_b) / divisor));
             // Those of A + B K.
@@ -253,9 +270,10 @@ impl<A: Arithmetic> Planner<A> {
             }
             let curved = columns.map(|column| cost.map(|row| dot(row, column)));
             cost = columns.map(|column| curved.map(|curved| dot(column, curved)));
-            for ((row, weights), k) in cost.iter_mut().zip(identity()).zip(knot.gain) {
-                *row = plus_scaled(plus_scaled(*row, one, weights), k, knot.gain);
+            for ((row, own), k) in cost.iter_mut().zip(spread(weights)).zip(knot.gain) {
+                *row = plus_scaled(plus_scaled(*row, one, own), torque_weight * k, knot.gain);
             }
+            check_finite("gain", &knot.gain)?;
         }
         Ok(())
     }
@@ -271,7 +289,7 @@ impl<A: Arithmetic> Planner<A> {
     ) -> A::Scalar {
         match plan.get(step) {
             Some(knot) => knot.follow(state),
-            None => self.recovery.regulator.torque(difference(state, State::UPRIGHT)),
+            None => self.recovery.wanted(difference(state, State::UPRIGHT)),
         }
     }
 
@@ -285,15 +303,19 @@ impl<A: Arithmetic> Planner<A> {
     pub fn decide(&mut self, state: State<A::Scalar>) -> Result<A::Scalar, Error> {
         self.model.set_state(state)?;
         let x = difference(state, State::UPRIGHT);
-        let (model, bounds) = (&self.model, self.weights.bounds);
-        self.is_holding =
-            is_near(x) && (self.is_holding || self.recovery.succeeds(model.clone(), bounds, AHEAD));
+        let bounds = self.weights.bounds;
+        let succeeds = || {
+            let model = Pendulum::<A>::new_unchecked(self.ahead, state);
+            self.recovery.succeeds(model, bounds, true)
+        };
+        self.is_holding = is_near(x) && (self.is_holding || succeeds());
+        let model = &self.model;
         let torque = match self.is_holding {
             true => self.recovery.torque(x),
             // It adds energy while it has the sign of θ̇2, and in the faster mode of swinging this
             // is opposite to that of θ̇1.
             false => {
-                let gain = A::Scalar::from_f64(-STEADY_PUMP);
+                let gain = A::Scalar::from_f64(-STEADY_PUMP * self.pump);
                 let torque = gain * (self.upright - model.energy()) * state.dtheta1;
                 saturate(torque, self.recovery.limit)
             }
@@ -307,7 +329,7 @@ impl<A: Arithmetic> Planner<A> {
     pub fn catches(&self, state: State<A::Scalar>) -> bool {
         let mut model = self.model.clone();
         model.set_state(state).is_ok()
-            && self.recovery.succeeds(model, self.weights.bounds, AFTER_A_PLAN)
+            && self.recovery.succeeds(model, self.weights.bounds, false)
     }
 
     /// Sets the SIMD instructions that plans side by side use: the widest by default.

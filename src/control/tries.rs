@@ -18,12 +18,8 @@ const LITTLE: f64 = 1e-3;
 const STALLED: u32 = 8;
 /// A change of the torques is tried at its full size, then at a quarter of it, and so on.
 const QUARTERS: u32 = 5;
-/// The first damping: it is added to the curvature of the cost by a torque. It grows where less
-/// than this part of a change lowers the cost.
-const DAMPING: f64 = 1e-3;
+/// The damping grows where less than this part of a change lowers the cost.
 const SMALL: f64 = 0.2;
-/// The least curvature by a torque.
-const LEAST: f64 = 1e-12;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
@@ -84,7 +80,8 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>, const LANES: usize>(
                 && let Some(len) = next(knots, i)
             {
                 orders.len.set_lane(i, number(len as f64));
-                *plan = Try { phase: Phase::Keeps, index: begun, ..Try::new() };
+                let damping = machine.weights.damping;
+                *plan = Try { phase: Phase::Keeps, index: begun, damping, ..Try::new() };
                 begun += 1;
             }
             active += usize::from(plan.phase != Phase::Idle);
@@ -155,7 +152,7 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>, const LANES: usize>(
         machine.level.run(backward);
         for (i, plan) in tries.iter_mut().enumerate() {
             if plan.phase == Phase::Waits {
-                match least.lane(i) >= number(LEAST) {
+                match least.lane(i) >= machine.weights.least {
                     true => (plan.phase, plan.part, plan.quarters) = (Phase::Searches, one, 0),
                     false => plan.fail(),
                 }
@@ -170,7 +167,7 @@ impl<S: Real> Try<S> {
             phase: Phase::Idle,
             index: 0,
             cost: S::ZERO,
-            damping: S::from_f64(DAMPING),
+            damping: S::ZERO,
             part: S::ZERO,
             quarters: 0,
             iterations: 0,

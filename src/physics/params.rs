@@ -293,7 +293,7 @@ for_f32_and_f64! {
         /// M of the absolute angles where the elbow is straight, except the rotor: the inertias
         /// of the whole arm but link 2 turning with it, of link 2 about its joint, and their
         /// coupling, kg m².
-        pub(super) const fn inertias(&self) -> [S; 3] {
+        pub(crate) const fn inertias(&self) -> [S; 3] {
             let (lc1, lc2, l1) = (self.center_of_mass1, self.center_of_mass2, self.length1);
             let link1 = self.mass1 * lc1 * lc1 + self.inertia1;
             let link2 = self.mass2 * lc2 * lc2 + self.inertia2;

@@ -176,8 +176,9 @@ fn plans_side_by_side_have_the_bits_of_one_alone() -> Result<(), Box<dyn Error>>
 
 fn alone_or_in_a_lane<A: Arithmetic>(params: Params<A::Scalar>) -> Result<(), Box<dyn Error>> {
     let weight = A::Scalar::from_f64(0.5);
-    let cost = Cost { torque_change: weight, power: weight, ..Cost::new(&params) };
-    let mut planner = Planner::<A>::with_cost(params, A::Scalar::from_f64(3.0), cost)?;
+    let limit = A::Scalar::from_f64(3.0);
+    let cost = Cost { torque_change: weight, power: weight, ..Cost::new(&params, limit) };
+    let mut planner = Planner::<A>::with_cost(params, limit, cost)?;
     let (start, rng) =
         (State::from([0.1, 0.2, -0.3, 0.4].map(A::Scalar::from_f64)), &mut Pcg64::new(1));
     let mut guesses = vec![vec![]];
@@ -223,7 +224,7 @@ fn a_weight_lowers_what_it_weights() -> Result<(), Box<dyn Error>> {
     /// Of a knot and the one before.
     type Term = fn(&Knot<f64>, &Knot<f64>) -> f64;
     let params = Params { dt: 0.02, ..Params::DEFAULT };
-    let plain = Cost::new(&params);
+    let plain = Cost::new(&params, 6.0);
     let mut guess = [Knot::EMPTY; 200];
     Planner::<Portable>::new(params, 6.0)?.guess(State::HANGING, &mut Pcg64::new(3), &mut guess)?;
     let sum = |cost, term: Term| {
@@ -250,7 +251,7 @@ fn a_weight_lowers_what_it_weights() -> Result<(), Box<dyn Error>> {
 
 #[test]
 fn weights_out_of_range_are_rejected() {
-    let plain = Cost::new(&Params::<f32>::DEFAULT);
+    let plain = Cost::new(&Params::<f32>::DEFAULT, 1.0);
     for (cost, rule) in [
         (Cost { power: -1.0, ..plain }, "power must be finite and at least 0 per J, got -1"),
         (Cost { margin: 0.0, ..plain }, "margin must be finite and above 0 m, got 0"),

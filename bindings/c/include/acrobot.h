@@ -421,8 +421,10 @@ acrobot_status_t acrobot_lqr(acrobot_t *acrobot,
     acrobot_state_t *gain,
     acrobot_error_t *error);
 
-// The default weights.
-acrobot_status_t acrobot_default_cost(const acrobot_params_t *params, acrobot_cost_t *cost);
+// The default weights for a machine and its largest torque, N m.
+acrobot_status_t acrobot_default_cost(const acrobot_params_t *params,
+    float limit,
+    acrobot_cost_t *cost);
 
 // For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
 // torque, N m. No velocity of a plan reaches its bound. A null `cost` has the default weights.

@@ -61,11 +61,12 @@ fn knots_of(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_default_cost(
     params: *const acrobot_params_t,
+    limit: f32,
     cost: *mut acrobot_cost_t,
 ) -> acrobot_status_t {
     status(|| {
         check(cost)?;
-        let weights = Cost::new(&read(params)?.try_into()?);
+        let weights = Cost::new(&read(params)?.try_into()?, limit);
         // SAFETY: both are `repr(C)` and have the same fields.
         cost.write(transmute::<Cost<f32>, acrobot_cost_t>(weights));
         Ok(())
@@ -83,7 +84,7 @@ pub unsafe extern "C" fn acrobot_planner_init(
     let init = || {
         let params = read(params)?.try_into()?;
         let cost = match cost.is_null() {
-            true => Cost::new(&params),
+            true => Cost::new(&params, limit),
             // SAFETY: as above.
             false => transmute::<acrobot_cost_t, Cost<f32>>(read(cost)?),
         };

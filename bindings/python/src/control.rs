@@ -103,7 +103,7 @@ impl Planner {
         weights: [f32; 5],
     ) -> PyResult<Self> {
         let params = acrobot.acrobot.params().cast();
-        let Cost { height: reach, margin: tenth, .. } = Cost::new(&params);
+        let Cost { height: reach, margin: tenth, .. } = Cost::new(&params, max_torque);
         let [angles, velocities] = pairs;
         let [torque, torque_change, power, below, arrival] = weights;
         let cost = Cost {

@@ -104,8 +104,8 @@ pub struct Planner {
 }
 
 /// The default weights, with those in the mask.
-fn cost(params: &Params<f32>, mask: u32) -> Cost<f32> {
-    let mut cost = Cost::new(params);
+fn cost(params: &Params<f32>, limit: f32, mask: u32) -> Cost<f32> {
+    let mut cost = Cost::new(params, limit);
     let ([angle1, angle2], [velocity1, velocity2]) = (&mut cost.angles, &mut cost.velocities);
     let weights = [
         angle1,
@@ -133,7 +133,7 @@ fn cost(params: &Params<f32>, mask: u32) -> Cost<f32> {
 #[unsafe(no_mangle)]
 pub extern "C" fn make(mask: u32, weights: u32, limit: f32) -> u32 {
     let params = changed(Params::DEFAULT, mask);
-    match control::Planner::with_cost(params, limit, cost(&params, weights)) {
+    match control::Planner::with_cost(params, limit, cost(&params, limit, weights)) {
         Ok(planner) => {
             let planner = keep(Planner { planner, knots: Vec::new() });
             set(&[planner.map_or(0, |planner| Box::into_raw(planner).addr() as u32)]);
