@@ -5,43 +5,90 @@ use std::fs;
 use acrobot::{Error, Params};
 use common::{absolute, text_of};
 
-/// Each number of the README's table stands in the page that its row links to.
+/// A phrase with a blank for a figure, what stands before this figure on the page, and how many
+/// cells of a row are between.
+type Figure = (&'static str, &'static str, usize);
+
+/// Of each row of the README's table, on the page that the row links to.
+const IN_THE_README: [&[Figure]; 8] = [
+    &[
+        ("{} times Gymnasium", "| acrobot, `Fast` |", 2),
+        ("{} times in a batch of 1,024", "| acrobot, batch of 1,024 `Fast` |", 2),
+    ],
+    &[
+        ("{} times Gymnasium with `make`", "| acrobot_rs for Python, `make` |", 2),
+        ("{} times with `make_vec` of 1,024", "Python, `make_vec` of 1,024 |", 2),
+    ],
+    &[("{} episodes recorded from Gymnasium 1.4.0", "from Gymnasium 1.4.0 with NumPy 2.4.6:", 0)],
+    &[
+        ("{} instructions per step of `Fast`", STEP, 0),
+        ("{} bytes of flash", "| flash of the crate with seeding, bytes |", 0),
+        ("{} bytes of RAM", "| RAM of an `Acrobot`, bytes |", 0),
+    ],
+    &[
+        ("{} times dm_control in a vector environment", "| `acrobot_rs`, vector |", 1),
+        ("a planner returns {}", "| the planner `stay_up`, 100 initial states |", 3),
+    ],
+    &[
+        ("1 N m, planned: all {} of", "-- --gymnasium` plans with 1 N m: all", 0),
+        ("{} initial states stay upright", "From each of", 0),
+    ],
+    &[("64 KiB | a mean return of {} after 100,000 steps", "| 64 KiB | 100,000 |", 1)],
+    &[("best known mean return {}", "| best known |", 0), ("policy is above {}", "| bound |", 0)],
+];
+
+const STEP: &str = "| instructions per step, with observation, end test and resets |";
+
 #[test]
 fn the_figures_of_the_readme_are_those_of_the_pages() {
     let readme = text_of("README.md");
-    let (_, figures) = readme.split_once("## Key figures").unwrap();
-    let lines = figures.lines().skip_while(|line| !line.starts_with('|'));
+    let (_, table) = readme.split_once("## Key figures\n\n").unwrap();
     // Without the head and its rule.
-    for row in lines.take_while(|line| line.starts_with('|')).skip(2) {
-        let [_, _, text, link, _] = row.split('|').collect::<Vec<_>>()[..] else {
-            panic!("three cells: {row}");
-        };
-        let (_, path) = link.trim().trim_end_matches(')').split_once("](").unwrap();
-        assert_numbers_are_in(text, path.split('#').next().unwrap());
+    let rows: Vec<_> = table.lines().take_while(|line| line.starts_with('|')).skip(2).collect();
+    assert_eq!(rows.len(), IN_THE_README.len(), "{rows:#?}");
+    for (row, figures) in rows.into_iter().zip(IN_THE_README) {
+        let (text, link) = row.rsplit_once(" | [").unwrap();
+        let (_, page) = link.split_once("](").unwrap();
+        assert_figures("README.md", text, page.split(['#', ')']).next().unwrap(), figures);
     }
 }
 
 #[test]
 fn the_figures_of_the_firmware_guide_are_those_of_its_page() {
+    let figures = [
+        ("{} bytes with `error.message()`", "and `message` of its error |", 0),
+        ("but {} with `Display`", "and `Display` of its error |", 0),
+        ("a step needs {} instructions in `Fast`", STEP, 0),
+        ("and {} in `Reference`", STEP, 2),
+    ];
     let guide = text_of("docs/embedded-topics.md");
     let (_, section) = guide.split_once("## Which arithmetic").unwrap();
     let (section, _) = section.split_once("\n## ").unwrap();
-    assert_numbers_are_in(section, "docs/embedded-figures.md");
+    assert_figures("docs/embedded-topics.md", section, "docs/embedded-figures.md", &figures);
 }
 
-fn assert_numbers_are_in(text: &str, page: &str) {
-    let linked = text_of(page);
-    let linked: Vec<&str> = words(&linked).collect();
-    for number in words(text).filter(|word| word.starts_with(|c: char| c.is_ascii_digit())) {
-        assert!(linked.contains(&number), "{number} is not in {page}");
+/// The text has these phrases, in this order, and no other numbers.
+fn assert_figures(name: &str, text: &str, page: &str, figures: &[Figure]) {
+    let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (text, linked) = (one_line(text), one_line(&text_of(page)));
+    let mut rest = &text[..];
+    for &(phrase, before, cells) in figures {
+        let [_, after] = linked.split(before).collect::<Vec<_>>()[..] else {
+            panic!("{page} must have {before:?} once, or tests/docs.rs must name another place");
+        };
+        let cell = after.split('|').nth(cells).unwrap_or_default();
+        let figure = cell.split_whitespace().next().unwrap_or_default();
+        let phrase = phrase.replace("{}", figure.trim_end_matches(','));
+        let found = rest.split_once(&phrase).filter(|(between, _)| number(between).is_none());
+        let why = || panic!("{name} must say {phrase:?}, as {page} does after {before:?}: {rest}");
+        (_, rest) = found.unwrap_or_else(why);
     }
+    assert_eq!(number(rest), None, "{name}: tests/docs.rs must name its place on {page}: {rest}");
 }
 
-/// The words without signs and punctuation.
-fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split([' ', '\n', '|']).map(|word| {
-        word.trim_start_matches(['-', '−']).trim_end_matches(['.', ',', ';', ':', ')', '`'])
-    })
+fn number(text: &str) -> Option<&str> {
+    let mut words = text.split(' ').map(|word| word.trim_start_matches(['-', '−', '(']));
+    words.find(|word| word.starts_with(|c: char| c.is_ascii_digit()))
 }
 
 /// Each language describes each parameter with the unit and the range that its error has.
@@ -118,7 +165,9 @@ fn check(file: &str, [start, name, end]: [&str; 3], unit: &str, range: &str) {
         let (other, _) = other.split_once('`').unwrap();
         return check(file, [start, other, end], unit, range);
     }
-    assert!(found.contains(unit) && found.contains(range), "{file}: {found:?}: {unit}; {range}");
+    let says = |text: String| found.contains(&text);
+    let has_unit = says(format!(" {unit};")) || says(format!(" {unit},"));
+    assert!(has_unit && says(format!("; {range}")), "{file}: {found:?}: {unit}; {range}");
 }
 
 /// The pages name the repository's files by their paths, without links, because rustdoc shows the
