@@ -9,6 +9,7 @@ use acrobot::physics::saturate;
 use acrobot::task::Task;
 use acrobot::{Fast, Params, State};
 
+use crate::resets::Reset;
 use crate::robot::Robot;
 use crate::swing_up::plans;
 use crate::task::{C1, LIMIT, RealAiGym};
@@ -20,9 +21,9 @@ const PLANNING: usize = 50;
 const EVERY: usize = 5;
 const RESETS: usize = 15;
 
-/// Plays with the resets of a seed, and so many tries of each plan. Returns the longest time of a
-/// plan, too.
-pub fn play(seed: u64, tries: u32) -> anyhow::Result<(Robot, Duration)> {
+/// Plays with these resets, or without any with those of the seed, and so many tries of each plan.
+/// Returns the longest time of a plan, too.
+pub fn play(seed: u64, resets: &[Reset], tries: u32) -> anyhow::Result<(Robot, Duration)> {
     let params: Params<f32> = Params { dt: EVERY as f64 * C1.dt, ..C1 }.cast();
     let cost = Cost { torque: 4e-3, arrival: 2.0, ..Cost::new(&params, LIMIT as f32) };
     let mut planner = Planner::<Fast>::with_cost(params, LIMIT as f32, cost)?;
@@ -30,8 +31,8 @@ pub fn play(seed: u64, tries: u32) -> anyhow::Result<(Robot, Duration)> {
     let (mut longest, mut sums, mut before) = (Duration::ZERO, [0.0; 2], None);
     for i in 1..=RESETS + 1 {
         let shift = if i > RESETS { 0.0 } else { uniform(&mut rng, -1.0, 1.0) / C1.dt };
-        let end = STEPS * i / (RESETS + 1);
-        let end = (end as f64 + shift).ceil() as usize;
+        let end = (STEPS * i / (RESETS + 1)) as f64 + shift;
+        let end = resets.get(i - 1).map_or(end, |[time, ..]| time / C1.dt).ceil() as usize;
         while robot.rows.len() < end {
             // There is no torque while the planner plans, from the state afterwards.
             let mut ahead = robot.clone();
@@ -55,13 +56,15 @@ pub fn play(seed: u64, tries: u32) -> anyhow::Result<(Robot, Duration)> {
             }
         }
         // The reset: a controller of both joints' positions, which compensates for gravity.
-        let goal = RealAiGym.draw(RealAiGym::RESET_BOUNDS, &mut rng).cast::<f64>();
+        let drawn = RealAiGym.draw(RealAiGym::RESET_BOUNDS, &mut rng).cast::<f64>();
+        let goal = [drawn.theta1, drawn.theta2];
+        let goal = resets.get(i - 1).map_or(goal, |[_, goal @ ..]| *goal);
         while i <= RESETS && robot.rows.len() < end + RESET {
             let state = robot.pendulum.state();
             let mut resting = robot.pendulum.clone();
             resting.set_state(State { dtheta1: 0.0, dtheta2: 0.0, ..state })?;
             let weights = inverse_dynamics(&resting, [0.0; 2])?.torques;
-            let errors = [goal.theta1 - state.theta1, goal.theta2 - state.theta2];
+            let errors = [goal[0] - state.theta1, goal[1] - state.theta2];
             let last = before.replace(errors).unwrap_or(errors);
             robot.step(from_fn(|j| {
                 sums[j] += errors[j];
