@@ -135,7 +135,7 @@ impl<const N: usize> Controller<N> {
         self.estimator.state()
     }
 
-    /// The estimated parameters.
+    /// The estimated parameters. While the machine stands, its masses drift, up to 8 %.
     #[must_use]
     pub fn params(&self) -> &Params<f32> {
         self.estimator.params()
