@@ -18,6 +18,7 @@ mod passes;
 mod plan;
 mod planner;
 mod recovery;
+mod region;
 mod regulator;
 mod tries;
 mod units;

@@ -42,9 +42,9 @@ const BEYOND: f64 = 20.0;
 const TORQUE: f64 = 0.1;
 const BELOW: f64 = 0.4;
 const ARRIVAL: f64 = 20.0;
-/// The first damping, which is added to the curvature of the cost by a torque, and the least
+/// The least damping, which is added to the curvature of the cost by a torque, and the least
 /// curvature, in the same units.
-const DAMPING: f64 = 0.1;
+const DAMPING: f64 = 1e-3;
 const LEAST: f64 = 1e-10;
 
 impl<S: Real> Cost<S> {
@@ -97,7 +97,7 @@ pub(super) struct Weights<S> {
     beyond: S,
     /// The power, W, within which its absolute value is smooth.
     smooth: S,
-    /// The first damping, and the least curvature by a torque, 1/(N m)².
+    /// The first damping: the weight of the torque. The least curvature by a torque. 1/(N m)².
     pub(super) damping: S,
     pub(super) least: S,
 }
@@ -115,12 +115,13 @@ impl<S: Real> Weights<S> {
         };
         let Units { time, torque, .. } = units;
         let curvature = dt.to_f64() / (time * torque * torque);
+        let damping = S::from_f64(DAMPING * curvature);
         Self {
             cost,
             bounds,
             beyond: dt * S::from_f64(BEYOND * time),
             smooth: S::from_f64(SMOOTH * torque / time),
-            damping: S::from_f64(DAMPING * curvature),
+            damping: if cost.torque > damping { cost.torque } else { damping },
             least: S::from_f64(LEAST * curvature),
         }
     }

@@ -45,6 +45,12 @@ pub enum ControlError {
     NotStabilizable,
     /// The weights do not see a motion that persists: one that needs more than 2⁴⁰ steps to vanish.
     NotDetectable,
+    /// A plan does not fit into memory.
+    #[cfg(feature = "alloc")]
+    OutOfMemory {
+        /// The number of knots.
+        knots: usize,
+    },
     /// The error of a gain can be above 1e-9 of its largest element, or deviations do not vanish
     /// with the gain that the scalar rounds.
     IllConditioned {
@@ -80,6 +86,10 @@ impl fmt::Display for ControlError {
             ),
             Self::NotDetectable => {
                 write!(f, "q must weight each motion that persists, but does not weight one")
+            }
+            #[cfg(feature = "alloc")]
+            Self::OutOfMemory { knots } => {
+                write!(f, "a plan must fit into memory, got {knots} knots")
             }
             Self::IllConditioned { error } => {
                 write!(f, "the relative error of the gain must be at most 1e-9, got {error:e}")

@@ -39,8 +39,6 @@ const HOLD: f64 = 0.6;
 /// The largest gain with which a guess pumps energy, and that without a plan, in the same units.
 const PUMP: f64 = 60.0;
 const STEADY_PUMP: f64 = 2.0;
-/// Without a plan, the simulation of the regulator takes about so many steps in a unit of time.
-const FINE: f64 = 50.0;
 
 /// Plans swing-ups for one machine: [an example](crate::guide::control#swing-up-by-a-plan).
 ///
@@ -57,8 +55,6 @@ pub struct Planner<A: Arithmetic> {
     hold: f64,
     /// The gain that pumps energy, s/rad: a unit of the machine.
     pump: f64,
-    /// The parameters for a simulation before a decision, whose steps can be longer.
-    ahead: Params<A::Scalar>,
     is_holding: bool,
     level: SimdLevel,
 }
@@ -71,8 +67,6 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
     pub fn new(params: Params<A::Scalar>, limit: A::Scalar) -> Result<Self, ControlError> {
-        Range::AboveZero.check("the largest torque", limit.to_f64(), "N m")?;
-        Pendulum::<A>::new(params, State::UPRIGHT)?;
         Self::with_cost(params, limit, Cost::new(&params, limit))
     }
 
@@ -87,22 +81,19 @@ impl<A: Arithmetic> Planner<A> {
         limit: A::Scalar,
         cost: Cost<A::Scalar>,
     ) -> Result<Self, ControlError> {
-        cost.check()?;
-        let recovery = Recovery::new::<A>(params, limit)?;
-        let units = Units::new(&params, limit);
+        params.validate()?;
         let infinity = A::Scalar::from_f64(f64::INFINITY);
         let bounds = [&mut params.max_velocity1, &mut params.max_velocity2];
         let bounds = bounds.map(|bound| replace(bound, infinity));
+        let recovery = Recovery::new::<A>(params, limit)?;
+        cost.check()?;
+        let units = Units::new(&params, limit);
         let model = Pendulum::new_unchecked(params, State::UPRIGHT);
-        let steps = units.time / (FINE * params.dt.to_f64());
-        let steps = if steps > 1.0 { steps as u32 } else { 1 };
-        let ahead = Params { dt: params.dt * A::Scalar::from_f64(f64::from(steps)), ..params };
         Ok(Self {
             recovery,
             weights: Weights::new(cost, params.dt, bounds, units),
             hold: HOLD * units.time,
             pump: units.torque * units.time / units.force,
-            ahead,
             upright: model.energy(),
             model,
             is_holding: false,
@@ -115,10 +106,16 @@ impl<A: Arithmetic> Planner<A> {
     #[must_use]
     pub fn for_simulation(mut self) -> Self {
         let infinity = A::Scalar::from_f64(f64::INFINITY);
-        let [max_velocity1, max_velocity2] = replace(&mut self.weights.bounds, [infinity; 2]);
-        let params = Params { max_velocity1, max_velocity2, ..*self.model.params() };
+        let [bound1, bound2] = replace(&mut self.weights.bounds, [infinity; 2]);
+        let mut params = *self.model.params();
+        let own = [&mut params.max_velocity1, &mut params.max_velocity2];
+        for ((own, bound), of_recovery) in
+            own.into_iter().zip([bound1, bound2]).zip(self.recovery.bounds_mut())
+        {
+            *own = if bound < *own { bound } else { *own };
+            *of_recovery = *own;
+        }
         self.model = Pendulum::new_unchecked(params, State::UPRIGHT);
-        self.ahead = Params { max_velocity1, max_velocity2, ..self.ahead };
         self
     }
 
@@ -208,7 +205,7 @@ impl<A: Arithmetic> Planner<A> {
 
     /// Checks the cost, and replaces the gains.
     fn finish(
-        &mut self,
+        &self,
         cost: A::Scalar,
         plan: &mut [Knot<A::Scalar>],
     ) -> Result<A::Scalar, ControlError> {
@@ -253,13 +250,13 @@ impl<A: Arithmetic> Planner<A> {
 
     /// Replaces the gains by those of a regulator along the plan, with the weights of the one
     /// upright. Torques at their bound get some, too.
-    fn track(&mut self, plan: &mut [Knot<A::Scalar>]) -> Result<(), ControlError> {
+    fn track(&self, plan: &mut [Knot<A::Scalar>]) -> Result<(), ControlError> {
         let one = A::Scalar::ONE;
-        let (weights, torque_weight) = (self.recovery.weights, self.recovery.torque_weight);
-        let mut cost = self.recovery.cost_to_go;
+        let (weights, torque_weight) = self.recovery.weights;
+        let (mut cost, mut model) = (self.recovery.cost_to_go, self.model.clone());
         for knot in plan.iter_mut().rev() {
-            self.model.set_state(knot.state)?;
-            let LinearModel { a, b } = linearize_step(&self.model, knot.torque)?;
+            model.set_state(knot.state)?;
+            let LinearModel { a, b } = linearize_step(&model, knot.torque)?;
             let cost_b = cost.map(|row| dot(row, b));
             let divisor = dot(b, cost_b) + torque_weight;
             let mut columns = transpose(&a);
@@ -289,7 +286,7 @@ impl<A: Arithmetic> Planner<A> {
     ) -> A::Scalar {
         match plan.get(step) {
             Some(knot) => knot.follow(state),
-            None => self.recovery.wanted(difference(state, State::UPRIGHT)),
+            None => self.recovery.torque(difference(state, State::UPRIGHT)),
         }
     }
 
@@ -303,23 +300,17 @@ impl<A: Arithmetic> Planner<A> {
     pub fn decide(&mut self, state: State<A::Scalar>) -> Result<A::Scalar, Error> {
         self.model.set_state(state)?;
         let x = difference(state, State::UPRIGHT);
-        let bounds = self.weights.bounds;
-        let succeeds = || {
-            let model = Pendulum::<A>::new_unchecked(self.ahead, state);
-            self.recovery.succeeds(model, bounds, true)
-        };
-        self.is_holding = is_near(x) && (self.is_holding || succeeds());
-        let model = &self.model;
+        self.is_holding = is_near(x) && (self.is_holding || self.catches(state));
         let torque = match self.is_holding {
             true => self.recovery.torque(x),
             // It adds energy while it has the sign of θ̇2, and in the faster mode of swinging this
             // is opposite to that of θ̇1.
             false => {
                 let gain = A::Scalar::from_f64(-STEADY_PUMP * self.pump);
-                let torque = gain * (self.upright - model.energy()) * state.dtheta1;
-                saturate(torque, self.recovery.limit)
+                gain * (self.upright - self.model.energy()) * state.dtheta1
             }
         };
+        let torque = saturate(torque, self.recovery.limit);
         Range::Finite.check("torque", torque.to_f64(), "N m")?;
         Ok(torque)
     }
@@ -327,9 +318,7 @@ impl<A: Arithmetic> Planner<A> {
     /// Whether the regulator succeeds from a state.
     #[must_use]
     pub fn catches(&self, state: State<A::Scalar>) -> bool {
-        let mut model = self.model.clone();
-        model.set_state(state).is_ok()
-            && self.recovery.succeeds(model, self.weights.bounds, false)
+        state.validate().is_ok() && self.recovery.succeeds::<A>(state, self.weights.bounds)
     }
 
     /// Sets the SIMD instructions that plans side by side use: the widest by default.

@@ -1,18 +1,19 @@
-//! The units of a machine: in them all machines of a shape move alike, whatever their size.
+//! The units of a machine: in them all machines of one shape move alike, whatever their size.
 
 use crate::math::Real;
 use crate::physics::Params;
 
-/// Times and torques are measured in these, so no constant of this module has the scale of a metre,
-/// a kilogram or a second.
+/// A time and two torques. Constants of this module are in these units, so that none has the scale
+/// of a metre, a kilogram or a second. They are roots and products, so powers of 4 and 2 in lengths
+/// and masses change no digit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Units {
     /// T = √(I / F), s, where I is the inertia of the straight machine about the fixed joint.
     pub(super) time: f64,
-    /// The largest torque, N m.
+    /// The largest torque of the motor, N m.
     pub(super) torque: f64,
-    /// F, N m: the torque of gravity on the straight machine when it is horizontal, plus the largest
-    /// torque. So a machine without gravity has units, too.
+    /// F, N m: the torque of gravity on the straight machine when it is level, plus the motor's. So
+    /// a machine without gravity has units, too.
     pub(super) force: f64,
 }
 
@@ -20,12 +21,11 @@ impl Units {
     pub(super) fn new<S: Real>(params: &Params<S>, limit: S) -> Self {
         let params: Params<f64> = params.cast();
         let [upper, link2, coupling] = params.inertias();
-        let between = coupling - params.rotor;
-        let Params { mass1, mass2, center_of_mass1, center_of_mass2, length1, gravity, .. } = params;
+        let Params { mass1, mass2, center_of_mass1, center_of_mass2, length1, .. } = params;
         let moment = mass1 * center_of_mass1 + mass2 * (length1 + center_of_mass2);
         let torque = limit.to_f64();
-        let force = (moment * gravity).abs() + torque;
-        let time = Real::sqrt((upper + link2 + 2.0 * between) / force);
+        let force = (moment * params.gravity).abs() + torque;
+        let time = Real::sqrt((upper + link2 + 2.0 * (coupling - params.rotor)) / force);
         Self { time, torque, force }
     }
 }

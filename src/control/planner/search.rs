@@ -10,7 +10,6 @@ use super::super::plan::{Knot, NoPlan};
 use super::super::tries::{self, Try};
 use super::{ITERATIONS, Planner};
 use crate::arithmetic::Arithmetic;
-use crate::error::Error;
 use crate::math::{Lanes, Numbers as _, Real};
 use crate::physics::State;
 
@@ -28,7 +27,7 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// # Errors
     ///
-    /// Those of `plan`.
+    /// Those of `plan`, and [`ControlError::OutOfMemory`] for too many steps.
     pub fn search<R: Rng + ?Sized>(
         &mut self,
         start: State<A::Scalar>,
@@ -37,50 +36,51 @@ impl<A: Arithmetic> Planner<A> {
         steps: usize,
     ) -> Result<Vec<Knot<A::Scalar>>, NoPlan> {
         start.validate()?;
+        let mut knots = memory(empty(), steps)?;
+        let mut guess = memory(Knot::EMPTY, steps)?;
         let mut guesser = self.clone();
-        let (mut tried, mut guess, mut found) = (0, Vec::new(), None);
+        let (mut tried, mut found) = (0, None);
         let next = |knots: &mut [Knot<Side<A::Scalar>>], lane| {
             while tried < tries as usize {
                 let len = steps * (1 + tried / OF_A_LENGTH % 10) / 10;
                 tried += 1;
-                guess.resize(len, Knot::EMPTY);
+                let guess = guess.get_mut(..len)?;
                 // Extreme parameters can make a guess overflow.
-                if guesser.guess(start, rng, &mut guess).is_ok() {
-                    set_plan(knots, lane, &guess);
+                if guesser.guess(start, rng, guess).is_ok() {
+                    set_plan(knots, lane, guess);
                     return Some(len);
                 }
             }
             None
         };
         let take = |_, lane, knots: &[Knot<Side<A::Scalar>>], cost: A::Scalar, end| {
-            if cost.is_finite() && self.catches(end) {
-                let plan: Vec<_> = knots.iter().map(|knot| knot.lane(lane)).collect();
-                found = self.is_success(&plan, end).then_some(plan);
+            if cost.is_finite() {
+                let mut plan: Vec<_> = knots.iter().map(|knot| knot.lane(lane)).collect();
+                let holds = self.is_success(&plan, end) && self.track(&mut plan).is_ok();
+                found = holds.then_some(plan);
             }
             found.is_none()
         };
-        let mut knots = vec![empty(); steps];
         let (machine, lanes) = (self.machine(self.level), &mut [Try::new(); LANES]);
         tries::improve::<A, _, LANES>(machine, lanes, start, ITERATIONS, &mut knots, next, take);
-        match found {
-            Some(mut plan) => self.track(&mut plan).map(|()| plan).map_err(NoPlan::Invalid),
-            None => Err(NoPlan::NotFound { tries }),
-        }
+        found.ok_or(NoPlan::NotFound { tries })
     }
 
     /// [Improves](Self::improve) plans side by side. Returns their costs.
     ///
     /// # Errors
     ///
-    /// A number of the state is not finite. In the list there are the errors of `improve`.
+    /// A number of the state is not finite, or [`ControlError::OutOfMemory`]. In the list there are
+    /// the errors of `improve`.
     pub fn improve_all(
         &mut self,
         start: State<A::Scalar>,
         iterations: u32,
         plans: &mut [Vec<Knot<A::Scalar>>],
-    ) -> Result<Vec<Result<A::Scalar, ControlError>>, Error> {
+    ) -> Result<Vec<Result<A::Scalar, ControlError>>, ControlError> {
         start.validate()?;
         let longest = plans.iter().map(Vec::len).max().unwrap_or(0);
+        let mut knots = memory(empty(), longest)?;
         let mut costs = vec![A::Scalar::ZERO; plans.len()];
         let (given, mut begun) = (plans.to_vec(), 0);
         let next = |knots: &mut [Knot<Side<A::Scalar>>], lane| {
@@ -97,12 +97,20 @@ impl<A: Arithmetic> Planner<A> {
             }
             true
         };
-        let mut knots = vec![empty(); longest];
         let (machine, lanes) = (self.machine(self.level), &mut [Try::new(); LANES]);
         tries::improve::<A, _, LANES>(machine, lanes, start, iterations, &mut knots, next, take);
         let finish = |(cost, plan): (_, &mut Vec<_>)| self.finish(cost, plan);
         Ok(costs.into_iter().zip(plans).map(finish).collect())
     }
+}
+
+/// Memory for so many knots.
+fn memory<T: Clone>(empty: T, knots: usize) -> Result<Vec<T>, ControlError> {
+    let mut memory = Vec::new();
+    let reserved = memory.try_reserve_exact(knots);
+    reserved.map_err(|_| ControlError::OutOfMemory { knots })?;
+    memory.resize(knots, empty);
+    Ok(memory)
 }
 
 fn empty<S: Real>() -> Knot<Side<S>> {
