@@ -2,7 +2,7 @@
 
 use core::iter::{once, repeat};
 
-use acrobot::control::{ControlError, Knot, Planner};
+use acrobot::control::{ControlError, Cost, Knot, Planner};
 use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Error, Params, State};
 
@@ -10,8 +10,10 @@ use crate::controller::{Arithmetic, Controller, Settings};
 
 /// The part of the motor's torque that plans use. The rest corrects deviations.
 const PLANNED: f32 = 0.9;
-/// The iterations of a slice.
+/// The iterations of a slice. They are few, so a plan has to change gently: its torque costs more
+/// than by default, by the first factor, and the time below by the second.
 const ITERATIONS: u32 = 4;
+const GENTLE: [f32; 2] = [16.0, 1.5];
 /// After so many slices, one takes the estimated parameters.
 const SLICES: u32 = 20;
 
@@ -61,7 +63,7 @@ impl<const N: usize> Replanner<N> {
         Ok(Self {
             limit: settings.limit,
             ticks,
-            planner: Planner::new(params, PLANNED * settings.limit)?,
+            planner: planner(params, settings.limit)?,
             params,
             estimated: settings.params,
             work: Work::Model,
@@ -132,7 +134,7 @@ impl<const N: usize> Replanner<N> {
             // Parameters that no plan can have keep the model before.
             Work::Model => {
                 let params = of_decisions(&self.estimated, self.ticks);
-                if let Ok(planner) = Planner::new(params, PLANNED * self.limit) {
+                if let Ok(planner) = planner(params, self.limit) {
                     (self.planner, self.params) = (planner, params);
                 }
             }
@@ -148,4 +150,11 @@ impl<const N: usize> Replanner<N> {
 /// Parameters whose steps are those of decisions.
 fn of_decisions(params: &Params<f32>, ticks: f32) -> Params<f32> {
     Params { dt: params.dt * ticks, ..*params }
+}
+
+fn planner(params: Params<f32>, limit: f32) -> Result<Planner<Arithmetic>, ControlError> {
+    let (limit, [torque, below]) = (PLANNED * limit, GENTLE);
+    let cost = Cost::new(&params, limit);
+    let cost = Cost { torque: torque * cost.torque, below: below * cost.below, ..cost };
+    Planner::with_cost(params, limit, cost)
 }

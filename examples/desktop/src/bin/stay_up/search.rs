@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{Knot, Planner};
+use acrobot::control::{Cost, Knot, Planner};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::saturate;
 use acrobot::task::Swingup;
@@ -54,7 +54,10 @@ impl Search {
         steps: usize,
         seed: u64,
     ) -> anyhow::Result<Self> {
-        let planner = Planner::new(*acrobot.params(), limit)?;
+        let cost = Cost::new(acrobot.params(), limit);
+        // Each step upright earns more than a plan needs to hold.
+        let cost = Cost { torque: 1.4 * cost.torque, below: 1.75 * cost.below, ..cost };
+        let planner = Planner::with_cost(*acrobot.params(), limit, cost)?;
         Ok(Self { acrobot, planner, limit, lengths, steps, rng: Pcg64::new(seed) })
     }
 
