@@ -328,8 +328,7 @@ impl<A: Arithmetic> Planner<A> {
     #[must_use]
     pub fn catches(&self, state: State<A::Scalar>) -> bool {
         let mut model = self.model.clone();
-        model.set_state(state).is_ok()
-            && self.recovery.succeeds(model, self.weights.bounds, false)
+        model.set_state(state).is_ok() && self.recovery.succeeds(model, self.weights.bounds, false)
     }
 
     /// Sets the SIMD instructions that plans side by side use: the widest by default.

@@ -96,8 +96,12 @@ impl Exact {
         Units { time, torque, .. }: Units,
         holds: [f64; 4],
     ) -> Result<Self, ControlError> {
-        let [[a11, a12, a13, a14], [a21, a22, a23, a24], [a31, a32, a33, a34], [a41, a42, a43, a44]] =
-            a.map(|row| row.map(S::to_f64));
+        let [
+            [a11, a12, a13, a14],
+            [a21, a22, a23, a24],
+            [a31, a32, a33, a34],
+            [a41, a42, a43, a44],
+        ] = a.map(|row| row.map(S::to_f64));
         let [b1, b2, b3, b4] = b.map(S::to_f64);
         // Velocities are `time` times as large.
         let model = LinearModel {
@@ -194,12 +198,7 @@ impl<S: Real> Recovery<S> {
     /// Adds the regulator for a machine at rest, where dry friction acts as much viscous friction.
     /// In motion it acts as little, and the gains for both have opposite signs.
     #[inline(never)]
-    fn rest<A: Arithmetic<Scalar = S>>(
-        &mut self,
-        machine: &Pendulum<A>,
-        units: Units,
-        lost: f64,
-    ) {
+    fn rest<A: Arithmetic<Scalar = S>>(&mut self, machine: &Pendulum<A>, units: Units, lost: f64) {
         let Ok(model) = linearize_step(machine, S::ZERO) else { return };
         let slow = SLOW * units.time / machine.model().constants.inverse_width.to_f64();
         let infinity = f64::INFINITY;

@@ -21,7 +21,8 @@ impl Units {
         let params: Params<f64> = params.cast();
         let [upper, link2, coupling] = params.inertias();
         let between = coupling - params.rotor;
-        let Params { mass1, mass2, center_of_mass1, center_of_mass2, length1, gravity, .. } = params;
+        let Params { mass1, mass2, center_of_mass1, center_of_mass2, length1, gravity, .. } =
+            params;
         let moment = mass1 * center_of_mass1 + mass2 * (length1 + center_of_mass2);
         let torque = limit.to_f64();
         let force = (moment * gravity).abs() + torque;

@@ -79,7 +79,8 @@ pub struct Params<S = f64> {
     /// N m s/rad; 0 or more. This and the fields below must be 0 in an arithmetic without friction.
     pub friction: Joints<S>,
     /// Coulomb friction: each joint resists with this torque as soon as it turns, N m; 0 or more.
-    /// Below 0.02 rad/s, or a larger velocity where `dt` needs it, it is smooth.
+    /// Below 0.02 rad/s, or [a larger velocity where `dt` and viscous friction need
+    /// it](crate::guide::equations#friction-and-rotors), it is smooth.
     pub coulomb: Joints<S>,
     /// What a [geared rotor](Self::with_rotor) in the elbow takes from the coupling of the links,
     /// kg m²; finite, and so small that the mass matrix is positive definite.
