@@ -38,8 +38,10 @@ pub enum ControlError {
     },
     /// The state of a regulator is not an equilibrium under the torque.
     NotInEquilibrium {
-        /// The first velocity that is not 0, rad/s, or acceleration above 0.01 rad/s².
+        /// The first velocity that is not 0, rad/s, or acceleration above the largest.
         rate: f64,
+        /// The largest acceleration of this machine, rad/s².
+        largest: f64,
     },
     /// The torque does not reach a motion that grows or persists, so no regulator makes it vanish.
     NotStabilizable,
@@ -69,10 +71,10 @@ impl fmt::Display for ControlError {
                 "{name} must be positive semidefinite, got elements of up to {value} in size after \
                 the elimination of its positive pivots"
             ),
-            Self::NotInEquilibrium { rate } => write!(
+            Self::NotInEquilibrium { rate, largest } => write!(
                 f,
                 "the state must be in equilibrium, with velocities of 0 and accelerations of at \
-                most 0.01 rad/s², got {rate}"
+                most {largest:.1e} rad/s², got {rate}"
             ),
             Self::NotStabilizable => write!(
                 f,
