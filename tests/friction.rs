@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use acrobot::arithmetic::{Arithmetic, Damped, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Real, Reference};
 use acrobot::control::{LinearModel, linearize};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Joints, Pendulum, wrap};
@@ -85,7 +85,8 @@ fn a_rotor_that_no_machine_has_is_rejected() {
     assert!(params.with_rotor(100.0, 6.0).validate().is_ok());
 }
 
-/// Whatever else is drawn: where both inertias are 1 kg m², any rotor up to 1 kg m² is possible.
+/// Whatever else is drawn: link 1 has 1.25 kg m² about its joint and link 2 has 1 kg m² about its
+/// centre of mass, so any rotor below √1.25 kg m² is possible.
 #[test]
 fn drawn_rotors_are_those_of_machines() {
     let draw = |high| -> Result<(), String> {
@@ -99,9 +100,57 @@ fn drawn_rotors_are_those_of_machines() {
         }
         Ok(())
     };
-    assert_eq!(draw(1.0), Ok(()));
-    let error = "rotor must be at most √(inertia1 inertia2) where one is drawn, in kg m², got 1.1";
-    assert!(draw(1.1).unwrap_err().starts_with(error));
+    assert_eq!(draw(1.117), Ok(()));
+    let rule = "rotor must be below √((inertia1 + m1 lc1²) inertia2) if one is drawn, in kg m²";
+    assert!(draw(1.119).unwrap_err().starts_with(rule));
+}
+
+/// Point masses without inertia about the joint but that of rotors have the least room for a rotor:
+/// none, where the lengths are in proportion. Whatever draws are accepted near this limit, all that
+/// they draw is valid, to the last digit.
+#[test]
+fn rotors_near_their_limit_are_valid_or_no_draws() {
+    fn check<A: Arithmetic>() {
+        let mut rng = Pcg64::new(3);
+        let [mut accepted, mut rejected] = [0, 0];
+        for i in 0..4000 {
+            let mut decades = |low, high| f64::exp(uniform(&mut rng, low, high) * f64::ln(10.0));
+            let (length1, center_of_mass2, inertia2) =
+                (decades(-1.0, 1.0), decades(-1.0, 1.0), decades(-4.0, 0.0));
+            let inertia1 = inertia2 * f64::powi(length1 / center_of_mass2, 2);
+            let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let params = Params {
+                length1,
+                center_of_mass1: 0.0,
+                center_of_mass2,
+                inertia1,
+                inertia2,
+                rotor: sign * f64::sqrt(inertia1 * inertia2) * (1.0 - decades(-16.0, -2.0)),
+                mass2: decades(-1.0, 1.0),
+                ..Params::DEFAULT
+            };
+            let high = params.mass2 * decades(0.0, 2.0);
+            let [low, high] = [params.mass2, high].map(A::Scalar::from_f64);
+            let mass2 = Draw::LogUniform { low, high };
+            let draws = Draws::new(Params { mass2, ..Draws::FIXED }).unwrap();
+            let mut acrobot = Acrobot::<A>::new(i);
+            if acrobot.set_params(params.cast()).is_err() {
+                continue;
+            }
+            for _ in 0..8 {
+                if acrobot.draw_params(&draws).is_err() {
+                    rejected += 1;
+                    break;
+                }
+                acrobot.params().validate().unwrap();
+                acrobot.set_params(params.cast()).unwrap();
+                accepted += 1;
+            }
+        }
+        assert!(accepted > 1000 && rejected > 100, "{accepted} {rejected}");
+    }
+    check::<Damped<Fast>>();
+    check::<Damped<Portable>>();
 }
 
 /// The rate of viscous friction in a machine at rest, 1/s: the largest of a straight and of a
