@@ -25,9 +25,9 @@ pub struct Noise<S = f64> {
     /// Of a measured angle, rad; above 0 and at most 2. An encoder with n counts for a turn has
     /// 1.8 / n.
     pub angle: S,
-    /// Of the torque that acts, N m; above 0, and so small that it turns link 2 by at most 1 rad in
-    /// a step. The estimator changes it between a tenth and a hundred times, in `f32` less if it is
-    /// so large that a measured angle would tell no velocity.
+    /// Of the torque that acts, N m; above 0, and so small that a step changes θ̇2 by at most 1/`dt`.
+    /// The estimator changes it between a tenth and a hundred times; less if an angle would then be
+    /// anywhere on the circle after a step, or, in `f32`, tell no velocity.
     pub torque: S,
 }
 
@@ -57,16 +57,16 @@ impl<S: Real> Given<S> {
             return out_of_range("angle", angle, "rad", "above 0 and at most 2");
         }
         let params: Params<f64> = params.cast();
-        // Where the elbow is straight or folded the motor turns link 2 fastest.
+        // How much a step changes θ̇2, times dt: most where the elbow is straight or folded.
         let [upper, link2, coupling] = params.inertias();
-        let turn = [coupling, -coupling].map(|coupling| {
+        let change = [coupling, -coupling].map(|coupling| {
             let between = coupling - params.rotor;
             let inertia = (upper * link2 - between * between) / (upper + link2 + 2.0 * between);
             params.dt * params.dt * torque / inertia
         });
-        let turn = turn[0].max(turn[1]);
-        if !(0.0..=1.0).contains(&turn) {
-            let rule = "so small that it turns link 2 by at most 1 rad in a step, in";
+        let change = change[0].max(change[1]);
+        if !(0.0..=1.0).contains(&change) {
+            let rule = "so small that a step changes dtheta2 by at most 1 / dt, in";
             return out_of_range("torque", torque, "N m", rule);
         }
         let rounding = S::EPSILON.to_f64();
@@ -74,7 +74,7 @@ impl<S: Real> Given<S> {
         let of_angle = angle * angle + 16.0 * rounding * rounding;
         // With a larger variance of the torque, rounding would hide what a measured angle tells, or
         // a predicted angle could be any of the circle.
-        let most = (of_angle / rounding).min(ON_THE_CIRCLE) / (turn * turn);
+        let most = (of_angle / rounding).min(ON_THE_CIRCLE) / (change * change);
         let Units { time, .. } = Units::new(&params, torque);
         let times = params.dt / time;
         let square = |x: f64| S::from_f64(x * x);

@@ -177,9 +177,14 @@ fn ten_seconds_of_motion_tell_the_parameters() {
     assert!(errors.iter().all(|error| *error < 0.001), "{errors:?}");
 }
 
+/// 10 to a power between these.
+fn decades(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
+    (uniform(rng, low, high) * f64::ln(10.0)).exp()
+}
+
 /// A machine like RealAIGym's of another size, mass and rate.
 fn random(rng: &mut Pcg64) -> Params {
-    let mut decades = |low, high| 10.0_f64.powf(uniform(rng, low, high));
+    let mut decades = |low, high| decades(rng, low, high);
     let (length, mass) = (decades(-1.5, 1.5), decades(-2.0, 2.0));
     let time = f64::sqrt(length);
     scaled(&Params { dt: 0.002 * decades(-1.0, 1.5), ..real() }, length, mass, time)
@@ -213,7 +218,6 @@ fn lives_on<A: Arithmetic>() {
         let mut params = random(&mut rng);
         params.coulomb = Joints::default();
         let limit = 9.81 * params.mass2 * params.length2;
-        let decades = |rng: &mut _, low, high| 10.0_f64.powf(uniform(rng, low, high));
         let angle = decades(&mut rng, -5.0, -2.5);
         let torque = limit * decades(&mut rng, -4.0, -1.0);
         let noise = Noise { angle, torque };
@@ -312,9 +316,10 @@ fn bad_noise_and_angles_are_rejected() {
     assert_eq!(torque, "torque must be finite and above 0 N m, got NaN");
     let torque = error(Noise { angle: 1e-3, torque: 1e7 });
     let rule =
-        "torque must be so small that it turns link 2 by at most 1 rad in a step, in N m, got ";
+        "torque must be so small that a step changes dtheta2 by at most 1 / dt, in N m, got ";
     assert_eq!(torque, format!("{rule}10000000"));
-    // A circle tells no more than 2 rad. With the default parameters 14 N m turn link 2 by 1 rad.
+    // A circle tells no more than 2 rad. With the default parameters 14.2 N m are 25 rad/s², and a
+    // step has 0.2 s.
     assert!(error(Noise { angle: 2.5, torque: 1.0 }).ends_with("at most 2 rad, got 2.5"));
     let of = |angle, torque| Estimator::<Fast>::new(Params::DEFAULT, Noise { angle, torque });
     assert!(of(2.0, 14.2).is_ok() && of(2.0, 14.3).is_err() && of(1e-30, 1e-30).is_ok());

@@ -64,6 +64,15 @@ fn estimates_are_those_of_machines() {
                 of_state.state().validate().unwrap();
                 of_params.state().validate().unwrap();
                 of_params.params().validate().unwrap();
+                // None is farther from the given one than four deviations, which equal it here.
+                let found = of_params.params().numbers().into_iter().zip(params.numbers());
+                for ((name, found), (_, given)) in found {
+                    let [found, given] = [found, given].map(A::Scalar::to_f64);
+                    assert!(
+                        (found - given).abs() <= 4.001 * given.abs(),
+                        "{name}: {found} {given}"
+                    );
+                }
             }
         });
     }
