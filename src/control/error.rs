@@ -19,8 +19,8 @@ pub enum ControlError {
         /// The first element that is not finite, in SI units.
         value: f64,
     },
-    /// A matrix of weights is not symmetric. Differences of up to 16 machine epsilons of its largest
-    /// element do not count.
+    /// A matrix of weights is not symmetric. Differences of up to 16 machine epsilons of its
+    /// largest element do not count.
     NotSymmetric {
         /// The argument.
         name: &'static str,

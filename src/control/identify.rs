@@ -21,9 +21,9 @@ const FIRST: (usize, f64) = (3, 0.03);
 /// Identifies a machine: its parameters, and the numbers that they follow from.
 ///
 /// Each recording has a sample in each `dt` of `given`, under its gravity. Its lengths, too, should
-/// be about right: with T = √((`length1` + `center_of_mass2`) / `gravity`), many fits and windows of
-/// T to 2.5 T are tried on the first three quarters of each recording, and those count that predict
-/// the last quarters best, 4 T ahead. So a recording of less than 6 T tells little.
+/// be about right: with T = √((`length1` + `center_of_mass2`) / `gravity`), many fits and windows
+/// of about T to 2.3 T are tried on the first three quarters of each recording. Those count that
+/// predict the last quarters best, 3.7 T ahead. A recording of less than 15 T has no such quarter.
 ///
 /// # Errors
 ///

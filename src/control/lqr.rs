@@ -34,8 +34,9 @@ impl<S: Real> Lqr<S> {
 
 /// The [linear-quadratic regulator](Lqr) of a discrete model.
 ///
-/// `q` weights the deviation: symmetric and positive semidefinite, both up to 16 machine epsilons of
-/// its largest element, by rows, 1/rad², s/rad² and s²/rad². `r` weights the torque, 1/(N m)²; above 0. The gain depends only on their ratio.
+/// `q` weights the deviation, by rows, 1/rad², s/rad² and s²/rad²: symmetric and positive
+/// semidefinite, both up to 16 machine epsilons of its largest element. `r` weights the torque,
+/// 1/(N m)²; above 0. The gain depends only on their ratio.
 ///
 /// Both scalars are computed in `f64`.
 ///

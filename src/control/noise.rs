@@ -25,9 +25,9 @@ pub struct Noise<S = f64> {
     /// Of a measured angle, rad; above 0 and at most 2. An encoder with n counts for a turn has
     /// 1.8 / n.
     pub angle: S,
-    /// Of the torque that acts, N m; above 0, and so small that a step changes θ̇2 by at most 1/`dt`.
-    /// The estimator changes it between a tenth and a hundred times; less if an angle would then be
-    /// anywhere on the circle after a step, or, in `f32`, tell no velocity.
+    /// Of the torque that acts, N m; above 0, and so small that a step changes θ̇2 by at most
+    /// 1/`dt`. The estimator changes it between a tenth and a hundred times; less if an angle would
+    /// then be anywhere on the circle after a step, or, in `f32`, tell no velocity.
     pub torque: S,
 }
 

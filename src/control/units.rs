@@ -11,8 +11,8 @@ pub(super) struct Units {
     pub(super) time: f64,
     /// The largest torque, N m.
     pub(super) torque: f64,
-    /// F, N m: the torque of gravity on the straight machine when it is horizontal, plus the largest
-    /// torque. So a machine without gravity has units, too.
+    /// F, N m: the torque of gravity on the straight machine when it is horizontal, plus the
+    /// largest torque. So a machine without gravity has units, too.
     pub(super) force: f64,
 }
 

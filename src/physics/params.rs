@@ -63,8 +63,8 @@ pub struct Params<S = f64> {
     /// Duration of one step, s; above 0.
     pub dt: S,
     /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity is none, stored as 3.4e38,
-    /// the largest `f32`, because observations are `f32`. So is `null`, which JSON's writers make of
-    /// infinity.
+    /// the largest `f32`, because observations are `f32`. JSON's writers make `null` of it, which
+    /// loads as infinity.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
     pub max_velocity1: S,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.

@@ -189,9 +189,10 @@ impl<S: Modeled> Draws<S> {
         let high = self.replace(params, |draw, number, before| draw.bounds(number, before)[1]);
         check_params::<A>(&low)?;
         check_params::<A>(&high)?;
-        // Of all draws between them the determinant U L − (r + k)² is at least (s − r) (s + r + 2 k),
-        // where s² is the product of the smallest inertias of link 1 about its joint and of link 2
-        // about its centre of mass. Rounding changes it by less than 8 machine epsilons of (s + k)².
+        // Of draws between them the determinant U L − (r + k)² is at least (s − r) (s + r + 2 k),
+        // where s² is the product of the least inertias of link 1 about its joint and of link 2
+        // about its centre of mass. Rounding changes it by less than 8 machine epsilons times
+        // (s + k)².
         let [least, most]: [Params<f64>; 2] = [low.cast(), high.cast()];
         let lc1 = least.center_of_mass1;
         let s = Real::sqrt((least.inertia1 + least.mass1 * lc1 * lc1) * least.inertia2);
