@@ -19,7 +19,8 @@ pub enum ControlError {
         /// The first element that is not finite, in SI units.
         value: f64,
     },
-    /// A matrix of weights is not symmetric.
+    /// A matrix of weights is not symmetric. Differences of up to 16 machine epsilons of its
+    /// largest element do not count.
     NotSymmetric {
         /// The argument.
         name: &'static str,
@@ -38,8 +39,10 @@ pub enum ControlError {
     },
     /// The state of a regulator is not an equilibrium under the torque.
     NotInEquilibrium {
-        /// The first velocity that is not 0, rad/s, or acceleration above 0.01 rad/s².
+        /// The first velocity that is not 0, rad/s, or acceleration above the largest.
         rate: f64,
+        /// The largest acceleration of this machine, rad/s².
+        largest: f64,
     },
     /// The torque does not reach a motion that grows or persists, so no regulator makes it vanish.
     NotStabilizable,
@@ -75,10 +78,10 @@ impl fmt::Display for ControlError {
                 "{name} must be positive semidefinite, got elements of up to {value} in size after \
                 the elimination of its positive pivots"
             ),
-            Self::NotInEquilibrium { rate } => write!(
+            Self::NotInEquilibrium { rate, largest } => write!(
                 f,
                 "the state must be in equilibrium, with velocities of 0 and accelerations of at \
-                most 0.01 rad/s², got {rate}"
+                most {largest:.1e} rad/s², got {rate}"
             ),
             Self::NotStabilizable => write!(
                 f,

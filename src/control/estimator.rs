@@ -3,14 +3,19 @@
 //!
 //! What the model does not say acts as a torque of the motor, whose variance follows the errors of
 //! the predicted angles. After a push the velocities are in doubt, but not the parameters.
+//!
+//! Constants have the machine's own units or none. Those that count measurements are of statistics,
+//! which need a number of samples and not a time.
 
 use core::array::from_fn;
 
 use super::error::ControlError;
 use super::linearize::{LinearModel, MassMatrix, linearize};
 use super::matrix::{
-    Matrix, add_outer, add_scaled, apply, diagonal, dot, spread, symmetrize, transpose,
+    Matrix, add_outer, add_scaled, apply, check_finite, diagonal, dot, spread, symmetrize,
+    transpose,
 };
+use super::noise::{Given, Noise};
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::Real;
@@ -19,30 +24,15 @@ use crate::physics::{
     Params, Pendulum, State, coulomb_friction, directions, plus_scaled, saturate, wrap,
 };
 
-/// The standard deviation of the velocities at first, rad/s.
-const AT_FIRST: f64 = 10.0;
 /// An angle is farther than so many standard deviations from its prediction only after a push.
 const PUSH: f64 = 6.0;
-/// The deviation of a parameter grows in each step by this part of the first one.
-const DRIFT: f64 = 3e-5;
-/// The variance of the torque is between these parts of the given one. At first it is the most, so
-/// that wrong parameters do not count as motion.
-const OF_TORQUE: [f64; 2] = [1e-2, 1e4];
-/// What the model does not say in a step, and rounding: standard deviations, rad and rad/s.
-const IN_A_STEP: [f64; 2] = [1e-6, 1e-3];
+/// The variance of the torque follows the errors of about 1/0.02 = 50 measurements, of which none
+/// counts for more than so many variances.
+const FOLLOWS: [f64; 2] = [0.02, 12.0];
+/// What rounding to `f32` can add to an angle in a step: a standard deviation, rad.
+const IN_A_STEP: f64 = 1e-6;
 /// An estimated parameter differs from the given one by at most so many deviations.
 const MOST: f64 = 4.0;
-
-/// The standard deviations of what an [`Estimator`] measures and of what acts on the machine.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Noise<S = f64> {
-    /// Of a measured angle, rad; above 0. An encoder with n counts for a turn has 1.8 / n.
-    pub angle: S,
-    /// Of the torque that acts, N m; above 0. The estimator changes it between a tenth and a
-    /// hundred times.
-    pub torque: S,
-}
 
 /// Estimates the state of a machine, and `K` of its parameters: none, or
 /// [`PARAMETERS`](Self::PARAMETERS).
@@ -52,21 +42,20 @@ pub struct Noise<S = f64> {
 #[derive(Clone, Debug)]
 pub struct Estimator<A: Arithmetic, const K: usize = 0> {
     model: Pendulum<A>,
-    noise: Noise<A::Scalar>,
-    /// The variance of the torque, (N m)².
+    given: Given<A::Scalar>,
+    /// The variance of the torque, in parts of the given one.
     torque: A::Scalar,
-    /// The covariances of the state. `None` before a measurement.
+    /// The covariances of the state. `None` before a measurement, and after an overflow.
     of_state: Option<Matrix<A::Scalar>>,
     parameters: [Parameter<A::Scalar, K>; K],
 }
 
-/// What is known of a parameter.
+/// What is known of a parameter. Covariances have its given deviation as their unit.
 #[derive(Clone, Copy, Debug)]
 struct Parameter<S, const K: usize> {
+    deviation: S,
     /// The smallest and the largest number.
     limits: [S; 2],
-    /// The variance that each step adds.
-    drift: S,
     /// The covariances with the state, and with each parameter.
     with_state: [S; 4],
     with_params: [S; K],
@@ -77,7 +66,7 @@ impl<A: Arithmetic> Estimator<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Pendulum::new`], and a noise is not finite and above 0.
+    /// Those of [`Pendulum::new`], and a [noise](Noise) is out of its range.
     pub fn new(params: Params<A::Scalar>, noise: Noise<A::Scalar>) -> Result<Self, Error> {
         Self::build(params, noise, [])
     }
@@ -121,14 +110,11 @@ impl<A: Arithmetic> Estimator<A, PARAMETERS> {
         let given = estimated(params.numbers());
         let parameters = from_fn(|i| {
             let ((name, given), (_, deviation)) = (given[i], deviations[i]);
-            let [most, drift] = [MOST, DRIFT].map(|x| A::Scalar::from_f64(x) * deviation);
+            let most = A::Scalar::from_f64(MOST) * deviation;
             let is_negative = given - most < zero && name != "rotor";
-            Parameter {
-                limits: [if is_negative { zero } else { given - most }, given + most],
-                drift: drift * drift,
-                with_state: [zero; 4],
-                with_params: from_fn(|j| if i == j { deviation * deviation } else { zero }),
-            }
+            let limits = [if is_negative { zero } else { given - most }, given + most];
+            let (with_state, with_params) = ([zero; 4], [zero; PARAMETERS]);
+            Parameter { deviation, limits, with_state, with_params }
         });
         Self::build(params, noise, parameters)
     }
@@ -143,11 +129,9 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         noise: Noise<A::Scalar>,
         parameters: [Parameter<A::Scalar, K>; K],
     ) -> Result<Self, Error> {
-        Range::AboveZero.check("angle", noise.angle.to_f64(), "rad")?;
-        Range::AboveZero.check("torque", noise.torque.to_f64(), "N m")?;
         let model = Pendulum::new(params, State::HANGING)?;
-        let torque = noise.torque * noise.torque * A::Scalar::from_f64(OF_TORQUE[1]);
-        Ok(Self { model, noise, torque, of_state: None, parameters })
+        let given = Given::new(model.params(), noise)?;
+        Ok(Self { model, given, torque: given.limits[1], of_state: None, parameters })
     }
 
     /// The estimated state.
@@ -169,23 +153,43 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         self.of_state.as_ref().map(|covariances| diagonal(covariances).map(root))
     }
 
-    /// Corrects the estimate by measured angles θ1 and θ2, rad. The first ones are taken as they
-    /// are, with velocities of 0.
+    /// Corrects the estimate by measured angles θ1 and θ2, rad. The first ones, and those after an
+    /// overflow, are taken as they are, with velocities of 0.
     ///
     /// # Errors
     ///
     /// An angle is not finite.
-    #[expect(clippy::indexing_slicing, reason = "i is 0 or 1")]
     pub fn measure(&mut self, angles: [A::Scalar; 2]) -> Result<(), Error> {
-        let (zero, one, number) = (A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::from_f64);
-        let measured = State::from([angles[0], angles[1], zero, zero]);
+        let measured = State::from([angles[0], angles[1], A::Scalar::ZERO, A::Scalar::ZERO]);
         measured.validate()?;
-        let [of_angle, of_torque] = [self.noise.angle, self.noise.torque].map(|x| x * x);
-        let Some(mut of_state) = self.of_state else {
-            let of_velocity = number(AT_FIRST * AT_FIRST);
-            self.of_state = Some(spread([of_angle, of_angle, of_velocity, of_velocity]));
-            return self.model.set_state(measured);
-        };
+        let corrected = self.of_state.and_then(|of_state| self.correct(of_state, angles));
+        self.of_state = corrected.or_else(|| self.begin(measured));
+        Ok(())
+    }
+
+    /// Begins with a state and the given deviations.
+    #[expect(clippy::indexing_slicing, reason = "i is below K")]
+    fn begin(&mut self, state: State<A::Scalar>) -> Option<Matrix<A::Scalar>> {
+        for (i, parameter) in self.parameters.iter_mut().enumerate() {
+            parameter.with_state = [A::Scalar::ZERO; 4];
+            parameter.with_params = [A::Scalar::ZERO; K];
+            parameter.with_params[i] = A::Scalar::ONE;
+        }
+        let Given { of_angle, of_velocity, limits, .. } = self.given;
+        self.torque = limits[1];
+        self.model.set_state(state).ok()?;
+        Some(spread([of_angle, of_angle, of_velocity, of_velocity]))
+    }
+
+    /// The covariances after a measurement. `None` if a number overflows.
+    #[expect(clippy::indexing_slicing, reason = "i is 0 or 1")]
+    fn correct(
+        &mut self,
+        mut of_state: Matrix<A::Scalar>,
+        angles: [A::Scalar; 2],
+    ) -> Option<Matrix<A::Scalar>> {
+        let (zero, one, number) = (A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::from_f64);
+        let Given { of_angle, limits, .. } = self.given;
         let mut y: [A::Scalar; 4] = self.model.state().into();
         let mut params = *self.model.params();
         angles.into_iter().enumerate().for_each(|(i, angle)| {
@@ -193,9 +197,9 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
             let square = error * error;
             // The variance of the torque follows the errors.
             let ratio = square / (of_state[i][i] + of_angle);
-            let rate = number(0.02) * (saturate(ratio, number(12.0)) - one);
-            let limits = OF_TORQUE.map(|part| of_torque * number(part));
-            self.torque = within(self.torque + self.torque * rate, limits);
+            let [rate, most] = FOLLOWS.map(number);
+            let change = rate * (saturate(ratio, most) - one);
+            self.torque = within(self.torque + self.torque * change, limits);
             if ratio > number(PUSH * PUSH) {
                 // The velocities are in doubt by as much as the error needs in one step.
                 let of_velocity = square / (params.dt * params.dt);
@@ -219,31 +223,54 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
                 for (covariance, x) in parameter.with_params.iter_mut().zip(with_angle) {
                     *covariance = *covariance - part * x;
                 }
-                *place = within(*place + part * error, parameter.limits);
+                *place = within(*place + parameter.deviation * (part * error), parameter.limits);
             }
         });
-        self.of_state = finite(of_state);
         if K > 0 {
             // Parameters that no machine has change nothing.
             let _ = self.model.set_params(params);
         }
-        let _ = self.model.set_state(y.into());
-        Ok(())
+        self.model.set_state(y.into()).ok()?;
+        check_finite("", of_state.as_flattened()).is_ok().then_some(of_state)
     }
 
     /// Takes a step of `dt` with a torque, N m. Before a measurement it does nothing.
     ///
     /// # Errors
     ///
-    /// The torque is not finite, or a derivative overflows.
-    #[expect(clippy::indexing_slicing, reason = "i is below K or 4")]
+    /// The torque is not finite. Or a derivative or a covariance overflows, or a joint turns by
+    /// more than half a turn in the step, so that its angles do not tell its velocity: then the
+    /// next measurement begins again.
     pub fn step(&mut self, torque: A::Scalar) -> Result<(), ControlError> {
-        let [zero, one, half] = [A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::HALF];
-        let (mut next, mut middle) = (self.model.clone(), self.model.clone());
+        let mut next = self.model.clone();
         next.step(torque)?;
-        let Some(mut of_state) = self.of_state else { return Ok(()) };
+        if let Some(of_state) = self.of_state.take() {
+            let State { dtheta1, dtheta2, .. } = next.state();
+            for (name, velocity) in [("dtheta1", dtheta1), ("dtheta2", dtheta2)] {
+                if velocity.abs() * self.model.params().dt > A::Scalar::PI {
+                    let rule = "at most half a turn in a step, in";
+                    let (value, unit) = (velocity.to_f64(), "rad/s");
+                    return Err(Error::OutOfRange { name, value, unit, rule }.into());
+                }
+            }
+            let of_state = self.predict(of_state, next.state(), torque)?;
+            (self.model, self.of_state) = (next, Some(of_state));
+        }
+        Ok(())
+    }
+
+    /// The covariances after a step to the state `next`.
+    #[expect(clippy::indexing_slicing, reason = "i is below K or 4")]
+    fn predict(
+        &mut self,
+        mut of_state: Matrix<A::Scalar>,
+        next: State<A::Scalar>,
+        torque: A::Scalar,
+    ) -> Result<Matrix<A::Scalar>, ControlError> {
+        let [zero, one, half] = [A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::HALF];
+        let mut middle = self.model.clone();
         let [theta1, theta2, before1, before2]: [A::Scalar; 4] = middle.state().into();
-        let [_, _, after1, after2]: [A::Scalar; 4] = next.state().into();
+        let [_, _, after1, after2]: [A::Scalar; 4] = next.into();
         let [v1, v2] = [(before1 + after1) * half, (before2 + after2) * half];
         let (dt, half_dt) = (middle.params().dt, middle.model().constants.half_dt);
         middle.set_state([theta1 + half_dt * v1, theta2 + half_dt * v2, v1, v2].into())?;
@@ -266,24 +293,25 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
             parameter.with_state = plus_scaled(moved, one, change);
             // Its transpose follows when the matrix becomes symmetric.
             add_outer(&mut of_state, one + one, slope, &plus_scaled(moved, half, change));
-            parameter.with_params[i] = parameter.with_params[i] + parameter.drift;
+            parameter.with_params[i] = parameter.with_params[i] + self.given.in_parameter;
         }
-        let b = apply(&lasting, &b);
+        let b = apply(&lasting, &b).map(|x| x * self.given.torque);
         add_outer(&mut of_state, self.torque, &b, &b);
         symmetrize(&mut of_state);
-        let [angle, velocity] = IN_A_STEP.map(|x| A::Scalar::from_f64(x * x));
-        // At opt-level z a `for` loop would keep a check of the index, here and in `measure`.
+        check_finite("covariances", of_state.as_flattened())?;
+        let (angle, velocity) =
+            (A::Scalar::from_f64(IN_A_STEP * IN_A_STEP), self.given.in_velocity);
+        // At opt-level z a `for` loop would keep a check of the index, here and in `correct`.
         [angle, angle, velocity, velocity].into_iter().enumerate().for_each(|(i, noise)| {
             // Rounding may have made it negative.
             let own = if of_state[i][i] > zero { of_state[i][i] } else { zero };
             of_state[i][i] = own + noise;
         });
-        (self.model, self.of_state) = (next, finite(of_state));
-        Ok(())
+        Ok(of_state)
     }
 
-    /// The derivatives of the accelerations \[a1, a2\] of a motion by each parameter:
-    /// M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
+    /// The derivatives of the accelerations \[a1, a2\] of a motion by each parameter, times its
+    /// deviation: M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
     fn slopes(&self, motion: &Pendulum<A>, [a1, a2]: [A::Scalar; 2]) -> [[A::Scalar; 2]; K] {
         let (o, one) = (A::Scalar::ZERO, A::Scalar::ONE);
         let mut slopes = [[o; 2]; K];
@@ -315,7 +343,9 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
             [a1 + a2, a1],
         ];
         let mass = MassMatrix::new::<A>(model, (sin2, cos2));
-        slopes.iter_mut().zip(forces).for_each(|(slope, forces)| *slope = mass.solve(forces));
+        for ((slope, forces), parameter) in slopes.iter_mut().zip(forces).zip(&self.parameters) {
+            *slope = mass.solve(forces).map(|x| x * parameter.deviation);
+        }
         slopes
     }
 }
@@ -323,11 +353,6 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
 #[expect(clippy::indexing_slicing, reason = "i is below 4")]
 fn add_diagonal<S: Real>(m: &mut Matrix<S>, diagonal: [S; 4]) {
     diagonal.into_iter().enumerate().for_each(|(i, x)| m[i][i] = m[i][i] + x);
-}
-
-/// Where a variance overflows, the next measurement begins again.
-fn finite<S: Real>(covariances: Matrix<S>) -> Option<Matrix<S>> {
-    diagonal(&covariances).iter().all(|x| x.is_finite()).then_some(covariances)
 }
 
 /// x yᵀ.

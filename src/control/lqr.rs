@@ -34,8 +34,9 @@ impl<S: Real> Lqr<S> {
 
 /// The [linear-quadratic regulator](Lqr) of a discrete model.
 ///
-/// `q` weights the deviation: symmetric and positive semidefinite, by rows, 1/rad², s/rad² and
-/// s²/rad². `r` weights the torque, 1/(N m)²; above 0. The gain depends only on their ratio.
+/// `q` weights the deviation, by rows, 1/rad², s/rad² and s²/rad²: symmetric and positive
+/// semidefinite, both up to 16 machine epsilons of its largest element. `r` weights the torque,
+/// 1/(N m)²; above 0. The gain depends only on their ratio.
 ///
 /// Both scalars are computed in `f64`.
 ///
@@ -55,8 +56,9 @@ pub fn lqr<S: Real>(model: &LinearModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr
     check_finite("q", q.as_flattened())?;
     let [a, q] = [&model.a, q].map(|m| m.map(|row| row.map(S::to_f64)));
     let (b, r) = (model.b.map(S::to_f64), r.to_f64());
-    check_symmetric(&q)?;
-    check_semidefinite(&q, 16.0 * S::EPSILON.to_f64())?;
+    let rounding = 16.0 * S::EPSILON.to_f64() * largest(q.as_flattened());
+    let q = symmetric(&q, rounding)?;
+    check_semidefinite(&q, rounding)?;
     Range::AboveZero.check("r", r, "per (N m)²")?;
 
     let problem = Problem { a, b, q, r };
@@ -282,20 +284,23 @@ fn has_vanished(m: &Matrix) -> bool {
     m.iter().fold(0.0, |sum, row| sum + inner(row, row)) < 1e-24
 }
 
-fn check_symmetric(q: &Matrix) -> Result<(), ControlError> {
-    for (&upper, &lower) in q.as_flattened().iter().zip(transpose(q).as_flattened()) {
-        if upper != lower {
+/// The matrix, symmetric to the last digit: products such as G W Gᵀ are so only up to rounding.
+fn symmetric(q: &Matrix, rounding: f64) -> Result<Matrix, ControlError> {
+    let mut symmetric = *q;
+    for (x, &lower) in symmetric.as_flattened_mut().iter_mut().zip(transpose(q).as_flattened()) {
+        let upper = *x;
+        if (upper - lower).abs() > rounding {
             return Err(ControlError::NotSymmetric { name: "q", upper, lower });
         }
+        *x = 0.5 * upper + 0.5 * lower;
     }
-    Ok(())
+    Ok(symmetric)
 }
 
 /// Subtracts (column columnᵀ) / pivot for the largest pivot on the diagonal, until none is above
 /// the rounding. Then only rounding remains of a positive semidefinite matrix.
-fn check_semidefinite(q: &Matrix, relative_rounding: f64) -> Result<(), ControlError> {
+fn check_semidefinite(q: &Matrix, rounding: f64) -> Result<(), ControlError> {
     let mut rest = *q;
-    let rounding = relative_rounding * largest(q.as_flattened());
     for _ in 0..4 {
         let mut greatest = (rounding, [0.0; 4]);
         for (i, row) in rest.iter().enumerate() {

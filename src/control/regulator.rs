@@ -3,20 +3,23 @@
 use super::error::ControlError;
 use super::linearize_step::linearize_step;
 use super::lqr::{Lqr, lqr};
+use super::units::Units;
 use crate::arithmetic::Arithmetic;
 use crate::math::Real;
+use crate::math::sealed::Sealed as _;
 use crate::physics::Pendulum;
 
-/// The largest acceleration in equilibrium, rad/s²: far above rounding.
-const LARGEST: f64 = 0.01;
+/// The largest acceleration in equilibrium, 1/T²: far above rounding.
+const LARGEST: f64 = 2.5e-3;
 
 /// The [regulator](lqr) that holds a pendulum in its state, which must be in equilibrium under
 /// `torque`, N m: [an example](crate::guide::control).
 ///
 /// # Errors
 ///
-/// [`ControlError::NotInEquilibrium`] for a velocity that is not 0 or an acceleration above
-/// 0.01 rad/s², and those of [`linearize_step`] and [`lqr`].
+/// [`ControlError::NotInEquilibrium`] for a velocity that is not 0, or an acceleration above 0.25 %
+/// of that with which the straight machine, when it is horizontal, falls and is turned by `torque`:
+/// 0.011 rad/s² for Gymnasium's machine without a torque. Those of [`linearize_step`] and [`lqr`].
 pub fn regulator<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
@@ -25,9 +28,11 @@ pub fn regulator<A: Arithmetic>(
 ) -> Result<Lqr<A::Scalar>, ControlError> {
     let model = linearize_step(pendulum, torque)?;
     let rates = pendulum.derivative(torque).map(Real::to_f64);
-    for (rate, largest) in rates.into_iter().zip([0.0, 0.0, LARGEST, LARGEST]) {
-        if !(-largest..=largest).contains(&rate) {
-            return Err(ControlError::NotInEquilibrium { rate });
+    let Units { time, .. } = Units::new(pendulum.params(), torque.abs());
+    let largest = LARGEST / time / time;
+    for (rate, most) in rates.into_iter().zip([0.0, 0.0, largest, largest]) {
+        if !(-most..=most).contains(&rate) {
+            return Err(ControlError::NotInEquilibrium { rate, largest });
         }
     }
     lqr(&model, q, r)

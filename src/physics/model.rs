@@ -1,6 +1,6 @@
 //! The model: parameters, and the constants of the equations that follow from them.
 
-use super::params::{Dynamics, Joints, Params};
+use super::params::{Dynamics, Params};
 use crate::error::Error;
 use crate::math::Real;
 
@@ -14,9 +14,11 @@ pub enum Form {
     Gymnasium,
 }
 
-/// The velocity, rad/s, from which on Coulomb friction is constant, if dt allows it.
+/// The velocity, rad/s, from which on Coulomb friction is constant, if dt allows it. A machine that
+/// friction holds creeps at less than this velocity, whatever its size: docs/equations.md has what
+/// that means for small and large machines.
 const WIDTH: f64 = 0.02;
-/// RK4 is stable up to a rate of 2.78/dt. Coulomb friction has at most this rate.
+/// RK4 is stable up to a rate of 2.78/dt. With Coulomb friction the rate is at most this.
 const STABLE: f64 = 2.5;
 
 /// The constants, of one acrobot or of many, named as in Sutton & Barto (1998), section 11.3.
@@ -188,20 +190,25 @@ for_f32_and_f64! {
         }
 
         /// The velocity from which on Coulomb friction is constant, rad/s: so wide that a step is
-        /// stable. At rest the rates are those of M⁻¹ C, where C has the slopes of both joints.
-        /// Their sum is convex in cos θ2, so largest where the elbow is straight or folded.
+        /// stable. At rest the rates are those of M⁻¹ (B + C), where B has the slopes of viscous
+        /// friction and C those of Coulomb's. Their sum is convex in cos θ2, so largest where the
+        /// elbow is straight or folded. Infinite where viscous friction leaves Coulomb's no rate.
         const fn width(params: &Params<S>) -> S {
             let [upper, link2, coupling] = params.inertias();
-            let Joints { joint1, joint2 } = params.coulomb;
+            let (viscous, coulomb) = (params.friction, params.coulomb);
             let mut width = WIDTH as S;
             let mut ends: &[S] = &[coupling - params.rotor, -coupling - params.rotor];
             while let &[between, ref left @ ..] = ends {
                 let inertia1 = upper + link2 + 2.0 * between;
-                let rates = joint1 * link2 + joint2 * inertia1;
-                let rates = 1.5 * rates / (upper * link2 - between * between);
-                let least = rates * params.dt / STABLE as S;
-                if least > width {
-                    width = least;
+                let determinant = upper * link2 - between * between;
+                let of_viscous = viscous.joint1 * link2 + viscous.joint2 * inertia1;
+                let of_coulomb = coulomb.joint1 * link2 + coulomb.joint2 * inertia1;
+                let rest = STABLE as S - of_viscous / determinant * params.dt;
+                let least = 1.5 * of_coulomb / determinant * params.dt / rest;
+                if rest > 0.0 {
+                    width = width.max(least);
+                } else {
+                    return S::INFINITY;
                 }
                 ends = left;
             }

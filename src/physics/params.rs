@@ -62,9 +62,12 @@ pub struct Params<S = f64> {
     pub gravity: S,
     /// Duration of one step, s; above 0.
     pub dt: S,
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
     /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity is none, stored as 3.4e38,
-    /// the largest `f32`, because observations are `f32`.
+    /// the largest `f32`, because observations are `f32`. JSON's writers make `null` of it, which
+    /// loads as infinity.
     pub max_velocity1: S,
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,
     /// Torques of the three actions, N m, in the order of their numbers; finite. They do not limit
@@ -79,11 +82,27 @@ pub struct Params<S = f64> {
     /// N m s/rad; 0 or more. This and the fields below must be 0 in an arithmetic without friction.
     pub friction: Joints<S>,
     /// Coulomb friction: each joint resists with this torque as soon as it turns, N m; 0 or more.
-    /// Below 0.02 rad/s, or a larger velocity where `dt` needs it, it is smooth.
+    /// Below 0.02 rad/s, or [a larger velocity where `dt` and viscous friction need
+    /// it](crate::guide::equations#friction-and-rotors), it is smooth.
     pub coulomb: Joints<S>,
     /// What a [geared rotor](Self::with_rotor) in the elbow takes from the coupling of the links,
     /// kg m²; finite, and so small that the mass matrix is positive definite.
     pub rotor: S,
+}
+
+/// A number, or infinity for `null` in a format for humans. Others store infinity as it is.
+#[cfg(feature = "serde")]
+fn or_infinite<'de, V, D>(deserializer: D) -> Result<V, D::Error>
+where
+    V: serde::Deserialize<'de>,
+    D: serde::Deserializer<'de>,
+{
+    use serde::de::IntoDeserializer as _;
+    if !deserializer.is_human_readable() {
+        return V::deserialize(deserializer);
+    }
+    let number = <Option<V> as serde::Deserialize>::deserialize(deserializer)?;
+    number.map_or_else(|| V::deserialize(f64::INFINITY.into_deserializer()), Ok)
 }
 
 impl<S: Real> Default for Params<S> {

@@ -189,13 +189,19 @@ impl<S: Modeled> Draws<S> {
         let high = self.replace(params, |draw, number, before| draw.bounds(number, before)[1]);
         check_params::<A>(&low)?;
         check_params::<A>(&high)?;
-        // Then no draw between them takes more of the coupling than the inertias allow.
-        let [most, other] = [high.rotor, low.rotor].map(S::abs);
-        let most = if most > other { most } else { other };
-        if low != high && most * most > low.inertia1 * low.inertia2 {
-            let rule = "at most √(inertia1 inertia2) where one is drawn, in";
-            let value = most.to_f64();
-            return Err(Error::OutOfRange { name: "rotor", value, unit: "kg m²", rule });
+        // Of draws between them the determinant U L − (r + k)² is at least (s − r) (s + r + 2 k),
+        // where s² is the product of the least inertias of link 1 about its joint and of link 2
+        // about its centre of mass. Rounding changes it by less than 8 machine epsilons times
+        // (s + k)².
+        let [least, most]: [Params<f64>; 2] = [low.cast(), high.cast()];
+        let lc1 = least.center_of_mass1;
+        let s = Real::sqrt((least.inertia1 + least.mass1 * lc1 * lc1) * least.inertia2);
+        let k = most.mass2 * most.length1 * most.center_of_mass2;
+        let r = least.rotor.abs().max(most.rotor.abs());
+        let is_below = r + 16.0 * S::EPSILON.to_f64() * (s + k) < s; // false for NaN
+        if low != high && r > 0.0 && !is_below {
+            let rule = "below √((inertia1 + m1 lc1²) inertia2) if one is drawn, in";
+            return Err(Error::OutOfRange { name: "rotor", value: r, unit: "kg m²", rule });
         }
         Ok(())
     }

@@ -95,6 +95,37 @@ fn single_precision_loses_upright_what_the_docs_say() {
     assert_says("docs/control.md", &rows.join("\n"));
 }
 
+/// What counts as an equilibrium is the machine's own: a lean of 1.5 mrad, not of 3, whatever the
+/// lengths.
+#[test]
+fn an_equilibrium_is_as_near_for_machines_of_any_size() {
+    for length in [1e-3, 0.1, 1.0, 100.0] {
+        let inertia = length * length;
+        let params = Params {
+            length1: length,
+            center_of_mass1: length / 2.0,
+            center_of_mass2: length / 2.0,
+            inertia1: inertia,
+            inertia2: inertia,
+            dt: 0.02 * f64::sqrt(length),
+            ..Params::DEFAULT
+        };
+        let lean = |lean, gravity| {
+            let state = State { theta1: PI + lean, ..State::HANGING };
+            let pendulum = Pendulum::<Portable>::new(Params { gravity, ..params }, state).unwrap();
+            control::regulator(&pendulum, 0.0, &diagonal([1.0; 4]), 1.0).map(drop)
+        };
+        assert_eq!(lean(1.5e-3, 9.8), Ok(()));
+        let error = lean(3e-3, 9.8).unwrap_err();
+        let ControlError::NotInEquilibrium { rate, largest } = error else { panic!("{error}") };
+        assert!(
+            rate.abs() > largest && (largest * length * 4.5 / 19.6 / 2.5e-3 - 1.0).abs() < 1e-12
+        );
+        // At rest without gravity, but no motor holds it.
+        assert_eq!(lean(1.0, 0.0), Err(ControlError::NotStabilizable));
+    }
+}
+
 /// A regulator holds equilibria only, also bent ones, which need a torque.
 #[test]
 fn a_regulator_needs_an_equilibrium() {
@@ -109,16 +140,21 @@ fn a_regulator_needs_an_equilibrium() {
         let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, bent).unwrap();
         let [_, torque] = inverse_dynamics(&pendulum, [0.0; 2]).unwrap().torques;
         assert!(torque.abs() > 2.0);
-        for (state, torque) in [(State::HANGING, 0.0), (State::UPRIGHT, 0.0), (bent, torque)] {
+        for (state, torque, most) in [
+            (State::HANGING, 0.0, "1.1e-2"),
+            (State::UPRIGHT, 0.0, "1.1e-2"),
+            (bent, torque, "1.4e-2"),
+        ] {
             assert_eq!(regulate(state, torque), Ok(()), "{state:?}");
-            let rule = "the state must be in equilibrium, with velocities of 0 and accelerations \
-                of at most 0.01 rad/s², got ";
+            let rule = format!(
+                "the state must be in equilibrium, with velocities of 0 and accelerations of at \
+                most {most} rad/s², got "
+            );
             let moving = State { dtheta2: 0.25, ..state };
             assert_eq!(regulate(moving, torque), Err(format!("{rule}0.25")));
             let leaning = State { theta1: state.theta1 + 0.1, ..state };
-            for (state, torque) in [(state, torque + 0.1), (leaning, torque)] {
-                assert!(regulate(state, torque).unwrap_err().starts_with(rule));
-            }
+            assert!(regulate(leaning, torque).unwrap_err().starts_with(&rule));
+            assert!(regulate(state, torque + 0.1).is_err());
         }
     }
     in_every_arithmetic!(check);

@@ -177,16 +177,176 @@ fn ten_seconds_of_motion_tell_the_parameters() {
     assert!(errors.iter().all(|error| *error < 0.001), "{errors:?}");
 }
 
+/// 10 to a power between these.
+fn decades(rng: &mut Pcg64, low: f64, high: f64) -> f64 {
+    (uniform(rng, low, high) * f64::ln(10.0)).exp()
+}
+
+/// A machine like RealAIGym's of another size, mass and rate.
+fn random(rng: &mut Pcg64) -> Params {
+    let mut decades = |low, high| decades(rng, low, high);
+    let (length, mass) = (decades(-1.5, 1.5), decades(-2.0, 2.0));
+    let time = f64::sqrt(length);
+    scaled(&Params { dt: 0.002 * decades(-1.0, 1.5), ..real() }, length, mass, time)
+}
+
+/// Lengths × a, masses × b and times × √a: in its own units the machine is the same.
+pub fn scaled(params: &Params, a: f64, b: f64, time: f64) -> Params {
+    let (inertia, torque) = (a * a * b, a * b);
+    let joints = |x: Joints<f64>, unit| Joints { joint1: x.joint1 * unit, joint2: x.joint2 * unit };
+    Params {
+        length1: params.length1 * a,
+        length2: params.length2 * a,
+        mass1: params.mass1 * b,
+        mass2: params.mass2 * b,
+        center_of_mass1: params.center_of_mass1 * a,
+        center_of_mass2: params.center_of_mass2 * a,
+        inertia1: params.inertia1 * inertia,
+        inertia2: params.inertia2 * inertia,
+        dt: params.dt * time,
+        friction: joints(params.friction, torque * time),
+        coulomb: joints(params.coulomb, torque),
+        rotor: params.rotor * inertia,
+        ..*params
+    }
+}
+
+/// Whatever an estimator was told, it follows the machine after good measurements.
+fn lives_on<A: Arithmetic>() {
+    let mut rng = Pcg64::new(7);
+    for i in 0..400 {
+        let mut params = random(&mut rng);
+        params.coulomb = Joints::default();
+        let limit = 9.81 * params.mass2 * params.length2;
+        let angle = decades(&mut rng, -5.0, -2.5);
+        let torque = limit * decades(&mut rng, -4.0, -1.0);
+        let noise = Noise { angle, torque };
+        let noise =
+            Noise { angle: A::Scalar::from_f64(angle), torque: A::Scalar::from_f64(noise.torque) };
+        let mut estimator = Estimator::<A>::new(params.cast(), noise).unwrap();
+        for _ in 0..i % 20 {
+            let size = decades(&mut rng, -3.0, if i % 2 == 0 { 1.0 } else { 25.0 });
+            let mut any = || A::Scalar::from_f64(uniform(&mut rng, -size, size));
+            let (angles, torque) = ([any(), any()], any());
+            estimator.measure(angles).unwrap();
+            if size < 1.0 {
+                estimator.measure(angles).unwrap();
+            }
+            let _ = estimator.step(torque);
+        }
+        let mut machine = Machine::new(params, i);
+        let mut worst = 0.0_f64;
+        let start = State::from([0.0; 4].map(|_: f64| uniform(&mut rng, -2.0, 2.0)));
+        machine.pendulum.set_state(State { dtheta1: 0.0, dtheta2: 0.0, ..start }).unwrap();
+        for tick in 0..1000 {
+            let State { theta1, theta2, .. } = machine.pendulum.state();
+            let angles = [theta1, theta2].map(|x| x + angle * uniform(&mut rng, -1.7, 1.7));
+            estimator.measure(angles.map(A::Scalar::from_f64)).unwrap();
+            if tick > 800 {
+                let [error1, error2, ..] =
+                    difference(estimator.state().cast(), machine.pendulum.state());
+                worst = worst.max(error1.abs()).max(error2.abs());
+            }
+            let step = estimator.step(A::Scalar::ZERO);
+            assert!(tick < 100 || step.is_ok(), "{i}: {step:?}");
+            machine.pendulum.step(0.0).unwrap();
+        }
+        assert!(worst < 5.0 * angle + 1e-4, "{i}: {worst} rad, {angle} {params:?}");
+    }
+}
+
+#[test]
+fn an_estimator_lives_on_after_any_measurements_and_torques() {
+    lives_on::<Damped<Fast>>();
+    lives_on::<Damped<Portable>>();
+}
+
+/// The law of scale, bit for bit: lengths × 1/4 and 16, masses × 1/2 and 8.
+#[test]
+fn a_machine_of_another_size_is_estimated_alike() {
+    let deviations = Params {
+        mass1: 0.05,
+        mass2: 0.05,
+        length1: 0.01,
+        inertia1: 0.002,
+        inertia2: 0.002,
+        rotor: 0.003,
+        friction: Joints { joint1: 0.01, joint2: 0.01 },
+        ..real()
+    };
+    // The width of Coulomb friction has a unit.
+    let given = Params { coulomb: Joints::default(), ..real() };
+    let deviations = Params { coulomb: Joints::default(), ..deviations };
+    let found = |a: f64, b: f64| {
+        let time = a.sqrt();
+        let noise = Noise { angle: 4e-4, torque: 0.05 * a * b };
+        let [machine, deviations] = [&given, &deviations].map(|x| scaled(x, a, b, time));
+        let wrong = Params { mass2: 1.1 * machine.mass2, ..machine };
+        let mut estimator =
+            Estimator::<Damped<Portable>, 10>::with_params(wrong, deviations, noise).unwrap();
+        let mut machine = Machine::new(machine, 1);
+        for tick in 0..500 {
+            let torque = if tick / 100 % 2 == 0 { 2.0 } else { -1.0 } * a * b;
+            estimator.measure(machine.angles()).unwrap();
+            estimator.step(torque).unwrap();
+            machine.pendulum.step(torque).unwrap();
+        }
+        let State { theta1, theta2, dtheta1, dtheta2 } = estimator.state();
+        let units = [1.0, 1.0, time.recip(), time.recip()];
+        let deviations = estimator.deviations().unwrap().into_iter().zip(units);
+        let state = [theta1, theta2, dtheta1 * time, dtheta2 * time];
+        (
+            state,
+            deviations.map(|(x, unit)| x / unit).collect::<Vec<_>>(),
+            estimator.params().mass2 / b,
+        )
+    };
+    let first = found(1.0, 1.0);
+    for (a, b) in [(0.25, 8.0), (16.0, 0.5), (1.0 / 1024.0, 1.0 / 64.0)] {
+        assert_eq!(found(a, b), first);
+    }
+}
+
 #[test]
 fn bad_noise_and_angles_are_rejected() {
     let error = |noise| Estimator::<Fast>::new(Params::DEFAULT, noise).unwrap_err().to_string();
     let angle = error(Noise { angle: 0.0, torque: 1.0 });
-    assert_eq!(angle, "angle must be finite and above 0 rad, got 0");
+    assert_eq!(angle, "angle must be above 0 and at most 2 rad, got 0");
     let torque = error(Noise { angle: 1e-3, torque: f32::NAN });
     assert_eq!(torque, "torque must be finite and above 0 N m, got NaN");
+    let torque = error(Noise { angle: 1e-3, torque: 1e7 });
+    let rule =
+        "torque must be so small that a step changes dtheta2 by at most 1 / dt, in N m, got ";
+    assert_eq!(torque, format!("{rule}10000000"));
+    // A circle tells no more than 2 rad. With the default parameters 14.2 N m are 25 rad/s², and a
+    // step has 0.2 s.
+    assert!(error(Noise { angle: 2.5, torque: 1.0 }).ends_with("at most 2 rad, got 2.5"));
+    let of = |angle, torque| Estimator::<Fast>::new(Params::DEFAULT, Noise { angle, torque });
+    assert!(of(2.0, 14.2).is_ok() && of(2.0, 14.3).is_err() && of(1e-30, 1e-30).is_ok());
+
     let noise = Noise { angle: 1e-3, torque: 0.1 };
     let mut estimator = Estimator::<Fast>::new(Params::DEFAULT, noise).unwrap();
     let error = estimator.measure([f32::NAN, 0.0]).unwrap_err().to_string();
     assert_eq!(error, "theta1 must be a finite number of rad, got NaN");
     assert!(estimator.step(f32::INFINITY).is_err());
+}
+
+/// An overflow is an error, and the next measurement begins again.
+#[test]
+fn an_estimate_that_overflows_is_an_error() {
+    let noise = Noise { angle: 1e-3, torque: 0.1 };
+    let params = Params { mass2: 1e30, ..Params::DEFAULT };
+    let mut estimator = Estimator::<Fast, 10>::with_params(Params::DEFAULT, params, noise).unwrap();
+    estimator.measure([0.1, 0.2]).unwrap();
+    let error = estimator.step(0.0).unwrap_err().to_string();
+    assert_eq!(error, "covariances must be finite in each element, got inf");
+    assert_eq!(estimator.deviations(), None);
+    estimator.measure([0.3, 0.4]).unwrap();
+    assert_eq!(estimator.state(), State::from([0.3, 0.4, 0.0, 0.0]));
+
+    let mut estimator = Estimator::<Fast>::new(Params::DEFAULT, noise).unwrap();
+    estimator.measure([0.1, 0.2]).unwrap();
+    let error = estimator.step(1e6).unwrap_err().to_string();
+    assert!(error.starts_with("dtheta2 must be at most half a turn in a step, in rad/s, got "));
+    assert_eq!(estimator.deviations(), None);
 }

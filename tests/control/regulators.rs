@@ -4,6 +4,7 @@ use std::array::from_fn;
 
 use acrobot::arithmetic::Real;
 use acrobot::control::{ControlError, LinearModel, Lqr, linearize_step, lqr};
+use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Pendulum;
 use acrobot::{Params, Portable, State};
 use common::{lines, numbers, text_of};
@@ -173,9 +174,50 @@ fn wrong_weights_are_rejected() {
     assert!(message(diagonal([1.0, 1.0, -1e-3, 1.0]), 1.0).starts_with(rule));
     assert!(message(diagonal([-1.0; 4]), 1.0).starts_with(rule));
 
+    // A tenth of a millionth is more than rounding in `f64`, and less in `f32`.
+    [q[1][3], q[3][1]] = [0.5, 0.5 + 1e-7];
+    assert!(message(q, 1.0).starts_with("q must be symmetric, got 0.5 and 0.5000001 on both"));
+    let model = upright();
+    let single = LinearModel { a: model.a.map(cast::<f32, 4>), b: cast(model.b) };
+    assert!(lqr(&single, &q.map(cast), 1.0).is_ok());
+
     // Of rank 1, and so up to rounding.
     let row = [0.1, 0.7, -0.3, 0.9];
     assert!(lqr(&upright(), &row.map(|x| row.map(|y| x * y)), 1.0).is_ok());
+}
+
+/// Weights of the outputs G x are G W Gᵀ, which most products round to a matrix that is not quite
+/// symmetric. Both triangles give the same gain up to rounding.
+#[test]
+fn products_are_weights() {
+    fn product<S: Real>(x: [[S; 4]; 4], y: [[S; 4]; 4]) -> [[S; 4]; 4] {
+        let element = |i: usize, j: usize| (0..4).fold(S::ZERO, |sum, k| sum + x[i][k] * y[k][j]);
+        from_fn(|i| from_fn(|j| element(i, j)))
+    }
+    fn check<S: Real>(limit: f64) {
+        let mut rng = Pcg64::new(5);
+        let mut skew = 0;
+        for _ in 0..1000 {
+            let mut number = |low| S::from_f64(uniform(&mut rng, low, 1.0));
+            let g: [[S; 4]; 4] = from_fn(|_| from_fn(|_| number(-1.0)));
+            let weights = from_fn(|i| from_fn(|j| if i == j { number(0.0) } else { S::ZERO }));
+            let q = product(product(g, weights), from_fn(|i| from_fn(|j| g[j][i])));
+            let transposed = from_fn(|i| from_fn(|j| q[j][i]));
+            skew += u32::from(q != transposed);
+            let LinearModel { a, b } = upright();
+            let model = LinearModel { a: a.map(cast), b: cast(b) };
+            let gain = |q| {
+                let Lqr { gain, cost_to_go } = lqr(&model, &q, S::from_f64(1.0)).unwrap();
+                assert_eq!(cost_to_go, from_fn(|i| from_fn(|j| cost_to_go[j][i])));
+                gain
+            };
+            let [found, other] = [gain(q), gain(transposed)];
+            assert!(relative(&found, &other.map(S::to_f64)) <= limit);
+        }
+        assert!(skew > 500, "{skew}");
+    }
+    check::<f64>(1e-13);
+    check::<f32>(1e-6);
 }
 
 #[test]

@@ -47,14 +47,16 @@ def derivative(p, y, torque, dynamics):
 
 
 def friction(p, dtheta):
-    """Viscous friction, and Coulomb's, whose rates are at most 2.5 / dt with the elbow straight and
-    folded."""
+    """Viscous friction, and Coulomb's. The rates of both are at most 2.5 / dt with the elbow straight
+    and folded."""
     l1, _, m1, m2, lc1, lc2, i1, i2, _, dt, *viscous, coulomb1, coulomb2, rotor = p
     upper, link2 = m1 * lc1**2 + i1 + m2 * l1**2, m2 * lc2**2 + i2
     width = mpmath.mpf(1) / 50
     for coupling in m2 * l1 * lc2 - rotor, -m2 * l1 * lc2 - rotor:
-        rates = coulomb1 * link2 + coulomb2 * (upper + link2 + 2 * coupling)
-        width = max(width, rates / (upper * link2 - coupling**2) * 1.5 * dt / 2.5)
+        determinant = upper * link2 - coupling**2
+        inverse = np.array([link2, upper + link2 + 2 * coupling]) / determinant * dt
+        rest = 2.5 - viscous @ inverse
+        width = max(width, 1.5 * np.array([coulomb1, coulomb2]) @ inverse / rest)
     x = np.array([min(max(x / width, -1), 1) for x in dtheta])
     return viscous * dtheta + np.array([coulomb1, coulomb2]) * (1.5 * x - x**3 / 2)
 

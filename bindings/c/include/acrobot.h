@@ -411,9 +411,9 @@ acrobot_status_t acrobot_linearize_step(acrobot_t *acrobot,
 // −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
 //
 // `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
-// accelerations of at most 0.01 rad/s². `q` has the weights of the four squared deviations, 0 or
-// more, in 1/rad² and s²/rad², and `r` that of the squared torque, above 0, in 1/(N m)². Where no
-// regulator exists, `error` names the `gain`.
+// accelerations of at most 0.25 % of that of the straight acrobot that falls from horizontal. `q`
+// has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that of
+// the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the `gain`.
 acrobot_status_t acrobot_lqr(acrobot_t *acrobot,
     const acrobot_state_t *target,
     const acrobot_state_t *q,

@@ -86,8 +86,8 @@ impl From<ControlError> for Rejected {
             ControlError::NotFinite { name, value } => {
                 Self::number(name, value, "", "finite in each element")
             }
-            ControlError::NotInEquilibrium { rate } => {
-                let rule = "in equilibrium: velocities 0, accelerations up to 0.01 rad/s²";
+            ControlError::NotInEquilibrium { rate, .. } => {
+                let rule = "in equilibrium: at rest, accelerating at most 0.25 % of a fall";
                 Self::number("target", rate, "", rule)
             }
             // Not another status: each firmware would contain its text.

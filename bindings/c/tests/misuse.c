@@ -273,7 +273,7 @@ static void arguments_of_an_acrobot(void)
     REJECTED(NULL, acrobot_lqr(acrobot, &REST, NULL, 1, &x, &error));
     expect_message(
         acrobot_lqr(acrobot, &ONES, &ONES, 1, &x, &error),
-        "target must be in equilibrium: velocities 0, accelerations up to 0.01 rad/s², got ");
+        "target must be in equilibrium: at rest, accelerating at most 0.25 % of a fall, got ");
     expect_message(acrobot_lqr(acrobot, &REST, &NEGATIVE, 1, &x, &error),
                    "q.theta2 must be finite and at least 0, got ");
     // Without gravity and weights nothing brings the acrobot back.

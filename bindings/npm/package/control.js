@@ -31,9 +31,9 @@ const MESSAGES = [
   (value, name) =>
     `${name} must be positive semidefinite, got elements of up to ${value} in size after the ` +
     "elimination of its positive pivots",
-  (value) =>
-    "the state must be in equilibrium, with velocities of 0 and accelerations of at most 0.01 " +
-    `rad/s², got ${value}`,
+  (value, name, other) =>
+    "the state must be in equilibrium, with velocities of 0 and accelerations of at most " +
+    `${other.toExponential(1)} rad/s², got ${value}`,
   () => "the torque must reach each motion that grows or persists, but does not reach one",
   () => "q must weight each motion that persists, but does not weight one",
   (value) => `the relative error of the gain must be at most 1e-9, got ${value}`,

@@ -48,11 +48,12 @@ fn estimates_are_those_of_machines() {
     fn check<A: Tested>() {
         let any = || number::<A::Scalar>(Range::Any);
         let ticks = prop::collection::vec(([any(), any()], any()), 20);
-        let noises = [-20.0..5.0_f64, -20.0..5.0_f64];
+        let noises = [-50.0..0.6_f64, -50.0..5.0_f64];
         holds(300, (params::<A>(Range::Any), noises, ticks), |(params, noises, ticks)| {
             let [angle, torque] = noises.map(|x| A::Scalar::from_f64(x.exp()));
             let noise = Noise { angle, torque };
-            let mut of_state = Estimator::<A>::new(params, noise).unwrap();
+            // Some motors turn a link by more than 1 rad in a step.
+            let Ok(mut of_state) = Estimator::<A>::new(params, noise) else { return };
             let mut of_params = Estimator::<A, 10>::with_params(params, params, noise).unwrap();
             for (angles, torque) in ticks {
                 of_state.measure(angles).unwrap();
@@ -63,6 +64,15 @@ fn estimates_are_those_of_machines() {
                 of_state.state().validate().unwrap();
                 of_params.state().validate().unwrap();
                 of_params.params().validate().unwrap();
+                // None is farther from the given one than four deviations, which equal it here.
+                let found = of_params.params().numbers().into_iter().zip(params.numbers());
+                for ((name, found), (_, given)) in found {
+                    let [found, given] = [found, given].map(A::Scalar::to_f64);
+                    assert!(
+                        (found - given).abs() <= 4.001 * given.abs(),
+                        "{name}: {found} {given}"
+                    );
+                }
             }
         });
     }

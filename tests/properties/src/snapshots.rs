@@ -1,12 +1,13 @@
 //! Snapshots of any acrobot resume to the same bits.
 
-use acrobot::arithmetic::Damped;
+use acrobot::arithmetic::{Damped, Modeled};
 use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
 use acrobot::task::Draws;
-use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use common::{bits, draws};
 use proptest::prelude::*;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::formats::again;
@@ -49,6 +50,28 @@ fn snapshots_resume_to_the_same_bits() {
     check::<Portable>();
     check::<Fast>();
     check::<Damped<Fast>>();
+}
+
+/// Only bounds of velocity may be infinite. JSON has no infinity: its writers make `null` of it.
+#[test]
+fn infinite_bounds_of_parameters_are_loaded() {
+    fn check<S: Modeled + Serialize + DeserializeOwned>() {
+        let infinite = S::from_f64(f64::INFINITY);
+        let (max_velocity1, max_velocity2) = (infinite, infinite);
+        let params = Params::<S> { max_velocity1, max_velocity2, ..Params::default() };
+        for (format, loaded) in again(&params) {
+            assert_eq!(loaded, params, "{format}");
+        }
+        let text = serde_json::to_string(&params).unwrap();
+        let error =
+            serde_json::from_str::<Params<S>>(&text.replace("\"mass1\":1.0", "\"mass1\":null"));
+        assert!(error.unwrap_err().to_string().starts_with("invalid type: null"));
+        let missing = text.replace("\"max_velocity1\":null,", "");
+        let error = serde_json::from_str::<Params<S>>(&missing).unwrap_err().to_string();
+        assert!(error.starts_with("missing field `max_velocity1`"), "{error}");
+    }
+    check::<f32>();
+    check::<f64>();
 }
 
 /// A struct, which some formats need.

@@ -59,7 +59,7 @@ fn write<const N: usize>(result: Result<[f32; N], ControlError>) -> u32 {
         Err(ControlError::NotFinite { name, value }) => (4, name, [value, 0.0]),
         Err(ControlError::NotSymmetric { name, upper, lower }) => (5, name, [upper, lower]),
         Err(ControlError::NotSemidefinite { name, value }) => (6, name, [value, 0.0]),
-        Err(ControlError::NotInEquilibrium { rate }) => (7, "", [rate, 0.0]),
+        Err(ControlError::NotInEquilibrium { rate, largest }) => (7, "", [rate, largest]),
         Err(ControlError::NotStabilizable) => (8, "", [0.0; 2]),
         Err(ControlError::IllConditioned { error }) => (10, "", [error, 0.0]),
         // `NotDetectable`: the crate has no other error.

@@ -247,11 +247,11 @@ class Identified:
 
 
 def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env) -> Identified:
-    """Identify a machine from recordings, each of a second or more.
+    """Identify a machine from recordings in which both links move, such as ten seconds.
 
     A recording has angles, ``(n, 2)``, rad, without jumps by whole turns, and the motor's torques,
     ``(n,)``, N m, or those of both joints, ``(n, 2)``, each until the next sample. ``env`` has
-    ``dt``, gravity and the centres of mass.
+    ``dt``, gravity and the centres of mass; its lengths should be about right.
     """
     recordings = []
     for angle, torque in zip(angles, torques, strict=True):
