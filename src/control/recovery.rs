@@ -31,8 +31,9 @@ const TIMES_DRY: [f64; 2] = [40.0, 20.0];
 const ROUGH: f64 = 1.0;
 const ROUGH_DRY: f64 = 0.1;
 /// A simulation takes at most about so many steps in a unit of time, however short those of the
-/// machine are.
-const FINE: f64 = 50.0;
+/// machine are: so many that the motor changes a velocity by at most a tenth of a unit in a step.
+const FINE: [f64; 2] = [50.0, 1000.0];
+const CHANGE: f64 = 0.1;
 
 /// A regulator whose torque is bounded.
 #[derive(Clone, Debug)]
@@ -72,7 +73,10 @@ impl<S: Real> Recovery<S> {
             let value = params.dt.to_f64();
             return Err(Error::OutOfRange { name: "dt", value, unit: "s", rule }.into());
         }
-        let own = (units.time / (FINE * params.dt.to_f64())) as u32;
+        let rate = units.time / params.dt.to_f64();
+        let [least, most] = FINE;
+        let fine = (design.largest_change() * rate / CHANGE).max(least).min(most);
+        let own = (rate / fine) as u32;
         let dt = params.dt * S::from_f64(f64::from(own.max(1)));
         let times = if is_dry { TIMES_DRY } else { TIMES };
         let mut recovery = Self {

@@ -12,7 +12,7 @@ use core::f64::consts::SQRT_2;
 use super::error::ControlError;
 use super::linearize::LinearModel;
 use super::lqr::{Lqr, lqr};
-use super::matrix::{Matrix, dot, identity};
+use super::matrix::{self, Matrix, dot, identity};
 use super::units::Units;
 use crate::math::Real;
 use crate::physics::plus_scaled;
@@ -23,6 +23,7 @@ const TORQUE: f64 = 1.0;
 
 /// A regulator and the factor of its cost, in units of the machine: the cost is |U x|².
 pub(super) struct Design {
+    b: [f64; 4],
     lqr: Lqr,
     factor: Matrix,
     /// |U x| in half of the ellipsoid in which the torque lasts, and in the region.
@@ -57,7 +58,7 @@ impl Design {
         for ((row, most), unit) in identity().into_iter().zip(holds).zip(units) {
             safe = safe.min(most / unit / largest(&factor, row));
         }
-        Ok(Self { lqr, factor, widest, safe, units, torque })
+        Ok(Self { b, lqr, factor, widest, safe, units, torque })
     }
 
     /// The weights of each deviation, 1/rad² and s²/rad², and of the torque, 1/(N m)².
@@ -70,6 +71,11 @@ impl Design {
     pub(super) fn cost_to_go<S: Real>(&self) -> Matrix<S> {
         let mut units = self.units.into_iter();
         self.lqr.cost_to_go.map(|row| self.of_si(row, 1.0 / units.next().unwrap_or(1.0)))
+    }
+
+    /// The most that the motor changes a velocity in a step, in units of the machine.
+    pub(super) fn largest_change(&self) -> f64 {
+        matrix::largest(&self.b)
     }
 
     /// |U x| where θ̇1 is the smallest velocity that an angle near `theta`, rad, notices in a step of
