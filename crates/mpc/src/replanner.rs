@@ -13,7 +13,7 @@ const PLANNED: f32 = 0.9;
 /// The iterations of a slice. They are few, so a plan has to change gently: its torque costs more
 /// than by default, by the first factor, and the time below by the second.
 const ITERATIONS: u32 = 4;
-const GENTLE: [f32; 2] = [16.0, 1.5];
+const GENTLE: [f32; 2] = [16.0, 2.5];
 /// After so many slices, one takes the estimated parameters.
 const SLICES: u32 = 20;
 
