@@ -255,6 +255,7 @@ impl<A: Arithmetic> Planner<A> {
         let (weights, torque_weight) = self.recovery.weights;
         let (mut cost, mut model) = (self.recovery.cost_to_go, self.model.clone());
         for knot in plan.iter_mut().rev() {
+            *knot = Knot { state: knot.state, ..Knot::open(knot.torque) };
             model.set_state(knot.state)?;
             let LinearModel { a, b } = linearize_step(&model, knot.torque)?;
             let cost_b = cost.map(|row| dot(row, b));

@@ -4,9 +4,9 @@
 use std::error::Error;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real};
-use acrobot::control::{Cost, Knot, NoPlan, Planner, difference};
+use acrobot::control::{ControlError, Cost, Knot, NoPlan, Planner, difference};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Pendulum, saturate};
+use acrobot::physics::{Joints, Pendulum, saturate};
 use acrobot::{Acrobot, Fast, Params, Portable, State};
 use common::twins::LEVELS;
 
@@ -167,6 +167,34 @@ fn extreme_states_give_an_error_or_a_torque_within_the_limit() {
     }
 }
 
+/// Machines and weights of any size.
+#[test]
+fn extreme_machines_give_an_error_or_gains_that_are_finite() {
+    let rng = &mut Pcg64::new(5);
+    let mut counts = [0; 3];
+    for _ in 0..1500 {
+        let mut wild = |decades: f64| libm::pow(10.0, uniform(rng, -decades, decades)) as f32;
+        let [mass1, mass2, length1, length2] = [0; 4].map(|_| wild(6.0));
+        let [center_of_mass1, center_of_mass2, inertia1, inertia2] = [0; 4].map(|_| wild(6.0));
+        let links = Params { mass1, mass2, length1, length2, ..Params::DEFAULT };
+        let params = Params { center_of_mass1, center_of_mass2, inertia1, inertia2, ..links };
+        let (params, limit) = (Params { dt: wild(3.0), ..params }, wild(12.0));
+        let [arrival, torque, power] = [0; 3].map(|_| wild(20.0));
+        let cost = Cost { arrival, torque, power, ..Cost::new(&params, limit) };
+        let Ok(mut planner) = Planner::<Fast>::with_cost(params, limit, cost) else {
+            counts[0] += 1;
+            continue;
+        };
+        let state = State::from([1.0, 0.5, wild(6.0), 0.0]);
+        let mut plan = [Knot::open(0.1); 30];
+        let improved = planner.improve(state, 3, &mut plan).is_ok();
+        let mut gains = plan.iter().flat_map(|knot| knot.gain);
+        assert!(!improved || gains.all(f32::is_finite), "{params:?} {cost:?} {limit}");
+        counts[1 + usize::from(improved)] += 1;
+    }
+    assert!(counts.iter().all(|&count| count > 100), "{counts:?}");
+}
+
 /// At each level of SIMD, whatever lengths the plans have.
 #[test]
 fn plans_side_by_side_have_the_bits_of_one_alone() -> Result<(), Box<dyn Error>> {
@@ -213,9 +241,52 @@ fn no_velocity_of_a_plan_reaches_its_bound() -> Result<(), Box<dyn Error>> {
     let planner = Planner::new(params, 12.0)?;
     let [first, second] = fastest(planner.clone())?;
     assert!(first < 5.0 && second < 9.0, "{first} {second}");
-    let [first, second] = fastest(planner.for_simulation())?;
+    let [first, second] = fastest(planner.for_simulation().for_simulation())?;
     assert!(first == 5.0 || second == 9.0, "{first} {second}");
     Ok(())
+}
+
+/// Gymnasium's links with friction of 0.02 N m s/rad in both joints, ±1 N m and no bounds: a swing-up
+/// takes longer than 20 s.
+#[test]
+fn a_weak_motor_swings_up_against_friction() -> Result<(), Box<dyn Error>> {
+    let friction = Joints { joint1: 0.02, joint2: 0.02 };
+    let [max_velocity1, max_velocity2] = [f32::INFINITY; 2];
+    let params = Params { dt: 0.02, friction, max_velocity1, max_velocity2, ..Params::DEFAULT };
+    let mut planner = Planner::<Damped<Fast>>::new(params, 0.8)?;
+    let (mut plan, rng) = ([Knot::EMPTY; 1500], &mut Pcg64::new(3));
+    let mut ends_upright = || {
+        planner.guess(State::HANGING, rng, &mut plan)?;
+        planner.improve(State::HANGING, 150, &mut plan)?;
+        Ok::<_, ControlError>(planner.catches(plan[1499].state))
+    };
+    assert!((0..20).any(|_| ends_upright() == Ok(true)));
+    for nearby in [[0.0; 4], [0.05, -0.05, 0.05, 0.05], [-0.1, 0.1, 0.0, -0.1]] {
+        let machine = Pendulum::new(params, State::from(nearby))?;
+        assert!(holds(&planner, machine, &plan, 1.0), "{nearby:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_plan_that_does_not_fit_into_memory_is_an_error() -> Result<(), Box<dyn Error>> {
+    let mut planner = Planner::<Fast>::new(Params::DEFAULT, 1.0)?;
+    for steps in [usize::MAX, 1 << 45] {
+        let error = planner.search(State::HANGING, 1, &mut Pcg64::new(1), steps).unwrap_err();
+        assert_eq!(error.to_string(), format!("a plan must fit into memory, got {steps} knots"));
+    }
+    Ok(())
+}
+
+/// Where `f32` loses a velocity, no regulator holds.
+#[test]
+fn steps_that_are_too_short_for_a_scalar_are_rejected() {
+    let params = Params { dt: 1e-5, ..Params::DEFAULT };
+    let error = Planner::<Fast>::new(params.cast(), 1.0).unwrap_err();
+    let rule = "dt must be longer for this scalar, which loses small velocities upright, in s, got";
+    assert!(error.to_string().starts_with(rule), "{error}");
+    let planner = Planner::<Portable>::new(params, 1.0).unwrap();
+    assert!(planner.catches(State::UPRIGHT));
 }
 
 /// Each weight lowers what it weights.

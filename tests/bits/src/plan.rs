@@ -52,4 +52,4 @@ pub fn planned() -> u64 {
     plan(LIMIT, RATE, &mut memory).map_or(0, |plan| digest(plan))
 }
 
-pub const PLAN: u64 = 0xb0b7_dcc0_ba4c_1bcf;
+pub const PLAN: u64 = 0x0684_a214_b09f_816d;
