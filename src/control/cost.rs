@@ -3,12 +3,12 @@
 use super::units::Units;
 use crate::error::{Error, Range};
 use crate::math::{Real, SinCos};
-use crate::physics::{Params, positions};
+use crate::physics::{Modeled, Params, positions};
 
 /// The weights of what a plan costs: the sum of all terms, over all its steps, and of its end. A
 /// larger weight makes its term smaller, at the expense of the others: [a table of what each
 /// does](crate::guide::control#what-a-plan-costs). `Cost { power: 0.5, torque_change: 1.0,
-/// ..Cost::new(&params) }` spares the motor: less energy, and no jumps of the torque.
+/// ..Cost::new(&params, limit)? }` spares the motor: less energy, and no jumps of the torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)] // for bindings/c
@@ -47,14 +47,21 @@ const ARRIVAL: f64 = 20.0;
 const DAMPING: f64 = 1e-3;
 const LEAST: f64 = 1e-10;
 
-impl<S: Real> Cost<S> {
+impl<S: Modeled> Cost<S> {
     /// Weights with which most tries of a swing-up succeed: the acrobot gets up early, with little
-    /// torque. The height is that of the upright tip, the margin a tenth of it. `limit` is the
-    /// largest torque, N m.
-    pub fn new(params: &Params<S>, limit: S) -> Self {
+    /// torque. The height is that of the upright tip, the margin a tenth of it. The weights follow
+    /// from the size of the machine and from its largest torque, N m, so machines of one shape have
+    /// the same plans in other units.
+    ///
+    /// # Errors
+    ///
+    /// A parameter is out of range, or the torque is not finite and above 0.
+    pub fn new(params: &Params<S>, limit: S) -> Result<Self, Error> {
+        Range::AboveZero.check("the largest torque", limit.to_f64(), "N m")?;
+        params.validate()?;
         let Units { time, torque, .. } = Units::new(params, limit);
         let height = params.length1 + params.length2;
-        Self {
+        Ok(Self {
             angles: [S::ZERO; 2],
             velocities: [S::ZERO; 2],
             torque: S::from_f64(TORQUE / (time * torque * torque)),
@@ -64,9 +71,11 @@ impl<S: Real> Cost<S> {
             height,
             margin: height * S::from_f64(0.1),
             arrival: S::from_f64(ARRIVAL),
-        }
+        })
     }
+}
 
+impl<S: Real> Cost<S> {
     /// Checks that all weights are finite and at least 0, and the margin above 0.
     pub(super) fn check(&self) -> Result<(), Error> {
         let ([angle1, angle2], [velocity1, velocity2]) = (self.angles, self.velocities);

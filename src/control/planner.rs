@@ -67,7 +67,7 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
     pub fn new(params: Params<A::Scalar>, limit: A::Scalar) -> Result<Self, ControlError> {
-        Self::with_cost(params, limit, Cost::new(&params, limit))
+        Self::with_cost(params, limit, Cost::new(&params, limit)?)
     }
 
     /// As [`new`](Self::new), with the weights of what a plan costs.

@@ -1,6 +1,6 @@
-//! What the regulator takes over, it holds, and so the end of each plan: on machines of four decades
-//! of length, mass and rate, with and without friction. `SEED=7 MACHINES=1000 cargo test --release
-//! --test control machines -- --nocapture` tries others.
+//! What the regulator takes over, it holds, and so the end of each plan: on machines of four
+//! decades of length, mass and rate, with and without friction. `SEED=7 MACHINES=1000 cargo test
+//! --release --test control machines -- --nocapture` tries others.
 
 use std::env;
 use std::f64::consts::PI;
@@ -106,7 +106,7 @@ fn seeds(machines: u64) -> impl Iterator<Item = u64> {
     (0..machines).map(move |i| first.wrapping_mul(1_000_000).wrapping_add(i))
 }
 
-/// Of so many states near the border of what the motor can hold: how many the regulator accepts, how
+/// How many of some states near the border of what the motor can hold the regulator accepts, how
 /// many of these fall, and how many others would be held.
 fn caught<A: Arithmetic>(params: &Params, limit: f64, states: u32, rng: &mut Pcg64) -> [u32; 3] {
     let (time, cast_params, [limit]) = (time(params, limit), params.cast(), cast([limit]));

@@ -47,7 +47,7 @@ def derivative(p, y, torque, dynamics):
 
 
 def friction(p, dtheta):
-    """Viscous friction, and Coulomb's. The rates of both are at most 2.5 / dt with the elbow straight
+    """Viscous friction, and Coulomb's. Both rates are at most 2.5 / dt with the elbow straight
     and folded."""
     l1, _, m1, m2, lc1, lc2, i1, i2, _, dt, *viscous, coulomb1, coulomb2, rotor = p
     upper, link2 = m1 * lc1**2 + i1 + m2 * l1**2, m2 * lc2**2 + i2

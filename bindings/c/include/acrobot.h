@@ -421,7 +421,7 @@ acrobot_status_t acrobot_lqr(acrobot_t *acrobot,
     acrobot_state_t *gain,
     acrobot_error_t *error);
 
-// The default weights for a machine and its largest torque, N m.
+// The default weights for a machine and its largest torque, N m, from whose sizes they follow.
 acrobot_status_t acrobot_default_cost(const acrobot_params_t *params,
     float limit,
     acrobot_cost_t *cost);

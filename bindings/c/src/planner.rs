@@ -66,7 +66,7 @@ pub unsafe extern "C" fn acrobot_default_cost(
 ) -> acrobot_status_t {
     status(|| {
         check(cost)?;
-        let weights = Cost::new(&read(params)?.try_into()?, limit);
+        let weights = Cost::new(&read(params)?.try_into()?, limit)?;
         // SAFETY: both are `repr(C)` and have the same fields.
         cost.write(transmute::<Cost<f32>, acrobot_cost_t>(weights));
         Ok(())
@@ -84,7 +84,7 @@ pub unsafe extern "C" fn acrobot_planner_init(
     let init = || {
         let params = read(params)?.try_into()?;
         let cost = match cost.is_null() {
-            true => Cost::new(&params, limit),
+            true => Cost::new(&params, limit)?,
             // SAFETY: as above.
             false => transmute::<acrobot_cost_t, Cost<f32>>(read(cost)?),
         };

@@ -294,9 +294,10 @@ static void arguments_of_a_planner(void)
     acrobot_cost_t cost;
     size_t length;
     float number;
-    REJECTED(NULL, acrobot_default_cost(NULL, &cost));
-    REJECTED(NULL, acrobot_default_cost(&PARAMS, NULL));
-    ACCEPTED(acrobot_default_cost(&PARAMS, &cost));
+    REJECTED(NULL, acrobot_default_cost(NULL, 1, &cost));
+    REJECTED(NULL, acrobot_default_cost(&PARAMS, 1, NULL));
+    REJECTED(NULL, acrobot_default_cost(&PARAMS, 0, &cost));
+    ACCEPTED(acrobot_default_cost(&PARAMS, 1, &cost));
     cost.power = -1;
     REJECTED(NULL, acrobot_planner_init(NULL, &PARAMS, 1, NULL, NULL));
     REJECTED(NULL, acrobot_planner_init(planner, NULL, 1, NULL, NULL));

@@ -159,7 +159,7 @@ static void controllers(void)
     CHECK(near(x.theta2, .01f * (model.b[1] - model.a[1][0])));
 
     // The cost of 2 N m for 0.2 s, before the torque is improved.
-    ACCEPTED(acrobot_default_cost(&params, &cost));
+    ACCEPTED(acrobot_default_cost(&params, 5, &cost));
     CHECK(cost.torque == .1f && cost.height == 2);
     cost.below = cost.arrival = 0;
     ACCEPTED(acrobot_planner_init(&planner, &params, 5, &cost, NULL));

@@ -42,19 +42,23 @@ export function regulator(
   params: Readonly<Partial<Params>>, q: Matrix, r: number, state?: Readonly<State>, torque?: number,
 ): Regulator;
 
-/** What a plan costs. A larger weight, of at least 0, makes its term smaller. */
+/**
+ * What a plan costs. A larger weight, of at least 0, makes its term smaller. Defaults follow from the
+ * machine: T² is the inertia of the straight machine about the fixed joint, divided by the sum of the
+ * torque of gravity when it is level and the largest torque u.
+ */
 export interface Cost {
   /** Of 2 − 2 cos x, for the deviation x of each angle from upright, 1/s. Default: [0, 0]. */
   angles: readonly [number, number];
   /** Of the squares of the velocities, s/rad². Default: [0, 0]. */
   velocities: readonly [number, number];
-  /** Of the square of the torque, 1/((N m)² s). Default: 0.1. */
+  /** Of the square of the torque, 1/((N m)² s). Default: 0.1 / (T u²). */
   torque: number;
   /** Of the square of the torque's change from step to step, 1/(N m)². Default: 0. */
   torqueChange: number;
   /** Of the absolute value of the motor's power, 1/J. Default: 0. */
   power: number;
-  /** Of the time that the tip is below `height`, 1/s. Default: 2. */
+  /** Of the time that the tip is below `height`, 1/s. Default: 0.4 / T. */
   below: number;
   /** Height of the tip above the fixed joint, m. Default: that of the upright tip. */
   height: number;

@@ -97,24 +97,23 @@ impl Planner {
         acrobot: PyRef<'_, Acrobot>,
         max_torque: f32,
         clamps: bool,
-        height: Option<f32>,
-        margin: Option<f32>,
+        given: [Option<f32>; 4],
         pairs: [[f32; 2]; 2],
-        weights: [f32; 5],
+        weights: [f32; 3],
     ) -> PyResult<Self> {
         let params = acrobot.acrobot.params().cast();
-        let Cost { height: reach, margin: tenth, .. } = Cost::new(&params, max_torque);
-        let [angles, velocities] = pairs;
-        let [torque, torque_change, power, below, arrival] = weights;
+        let own = Cost::new(&params, max_torque).map_err(rejected)?;
+        let ([torque, below, height, margin], [angles, velocities]) = (given, pairs);
+        let [torque_change, power, arrival] = weights;
         let cost = Cost {
             angles,
             velocities,
-            torque,
+            torque: torque.unwrap_or(own.torque),
             torque_change,
             power,
-            below,
-            height: height.unwrap_or(reach),
-            margin: margin.unwrap_or(tenth),
+            below: below.unwrap_or(own.below),
+            height: height.unwrap_or(own.height),
+            margin: margin.unwrap_or(own.margin),
             arrival,
         };
         let planner = control::Planner::with_cost(params, max_torque, cost).map_err(rejected)?;

@@ -154,7 +154,7 @@ fn of_decisions(params: &Params<f32>, ticks: f32) -> Params<f32> {
 
 fn planner(params: Params<f32>, limit: f32) -> Result<Planner<Arithmetic>, ControlError> {
     let (limit, [torque, below]) = (PLANNED * limit, GENTLE);
-    let cost = Cost::new(&params, limit);
+    let cost = Cost::new(&params, limit)?;
     let cost = Cost { torque: torque * cost.torque, below: below * cost.below, ..cost };
     Planner::with_cost(params, limit, cost)
 }

@@ -104,8 +104,8 @@ pub struct Planner {
 }
 
 /// The default weights, with those in the mask.
-fn cost(params: &Params<f32>, limit: f32, mask: u32) -> Cost<f32> {
-    let mut cost = Cost::new(params, limit);
+fn cost(params: &Params<f32>, limit: f32, mask: u32) -> Result<Cost<f32>, ControlError> {
+    let mut cost = Cost::new(params, limit)?;
     let ([angle1, angle2], [velocity1, velocity2]) = (&mut cost.angles, &mut cost.velocities);
     let weights = [
         angle1,
@@ -125,7 +125,7 @@ fn cost(params: &Params<f32>, limit: f32, mask: u32) -> Cost<f32> {
             *weight = given;
         }
     }
-    cost
+    Ok(cost)
 }
 
 /// Makes a planner with the parameters in the mask and the weights in the other one. Writes its
@@ -133,7 +133,8 @@ fn cost(params: &Params<f32>, limit: f32, mask: u32) -> Cost<f32> {
 #[unsafe(no_mangle)]
 pub extern "C" fn make(mask: u32, weights: u32, limit: f32) -> u32 {
     let params = changed(Params::DEFAULT, mask);
-    match control::Planner::with_cost(params, limit, cost(&params, limit, weights)) {
+    let cost = cost(&params, limit, weights);
+    match cost.and_then(|cost| control::Planner::with_cost(params, limit, cost)) {
         Ok(planner) => {
             let planner = keep(Planner { planner, knots: Vec::new() });
             set(&[planner.map_or(0, |planner| Box::into_raw(planner).addr() as u32)]);

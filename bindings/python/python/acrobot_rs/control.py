@@ -110,9 +110,10 @@ class Plan:
 class Planner:
     """Plans swing-ups in ``float32``, for a motor of at most ``max_torque``, N m.
 
-    ``angles`` to ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust. ``height``
-    is by default that of the upright tip, and ``margin`` a tenth of it. No velocity of a plan
-    reaches a bound of the parameters. With ``clamps`` it may: environments clamp it there.
+    ``angles`` to ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust. By default
+    ``torque`` and ``below`` follow from the size of the machine, ``height`` is that of the upright
+    tip, and ``margin`` a tenth of it. No velocity of a plan reaches a bound of the parameters. With
+    ``clamps`` it may: environments clamp it there.
     """
 
     def __init__(
@@ -122,19 +123,19 @@ class Planner:
         *,
         angles: tuple[float, float] = (0.0, 0.0),
         velocities: tuple[float, float] = (0.0, 0.0),
-        torque: float = 0.1,
+        torque: float | None = None,
         torque_change: float = 0.0,
         power: float = 0.0,
-        below: float = 2.0,
+        below: float | None = None,
         height: float | None = None,
         margin: float | None = None,
         arrival: float = 20.0,
         clamps: bool = False,
     ) -> None:
         acrobot = _acrobot(env)
-        pairs, weights = [angles, velocities], [torque, torque_change, power, below, arrival]
+        given, weights = [torque, below, height, margin], [torque_change, power, arrival]
         self._native = _native.Planner(
-            acrobot._native, max_torque, clamps, height, margin, pairs, weights
+            acrobot._native, max_torque, clamps, given, [angles, velocities], weights
         )
         self._dt = acrobot.dt
 

@@ -245,7 +245,8 @@ fn learners() {
 fn planner<A: Arithmetic>() {
     let mut memory = black_box([Knot::EMPTY; 20]);
     let mut rng = Pcg64::new(black_box(42));
-    let cost = Cost { torque_change: number(), ..Cost::new(&params(), number()) };
+    let Ok(cost) = Cost::new(&params(), number()) else { return };
+    let cost = Cost { torque_change: number(), ..cost };
     if let Ok(mut planner) = Planner::<A>::with_cost(params(), number(), cost) {
         let _ = black_box(planner.decide(state()));
         let _ = black_box(planner.improve(state(), black_box(10), &mut memory));

@@ -25,7 +25,7 @@ const RESETS: usize = 15;
 /// Returns the longest time of a plan, too.
 pub fn play(seed: u64, resets: &[Reset], tries: u32) -> anyhow::Result<(Robot, Duration)> {
     let params: Params<f32> = Params { dt: EVERY as f64 * C1.dt, ..C1 }.cast();
-    let cost = Cost { torque: 4e-3, arrival: 2.0, ..Cost::new(&params, LIMIT as f32) };
+    let cost = Cost { torque: 4e-3, arrival: 2.0, ..Cost::new(&params, LIMIT as f32)? };
     let mut planner = Planner::<Fast>::with_cost(params, LIMIT as f32, cost)?;
     let (mut robot, mut rng) = (Robot::hanging(C1)?, Pcg64::new(seed));
     let (mut longest, mut sums, mut before) = (Duration::ZERO, [0.0; 2], None);

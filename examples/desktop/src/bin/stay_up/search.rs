@@ -54,7 +54,7 @@ impl Search {
         steps: usize,
         seed: u64,
     ) -> anyhow::Result<Self> {
-        let cost = Cost::new(acrobot.params(), limit);
+        let cost = Cost::new(acrobot.params(), limit)?;
         // Each step upright earns more than a plan needs to hold.
         let cost = Cost { torque: 1.4 * cost.torque, below: 1.75 * cost.below, ..cost };
         let planner = Planner::with_cost(*acrobot.params(), limit, cost)?;
