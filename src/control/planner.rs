@@ -108,13 +108,10 @@ impl<A: Arithmetic> Planner<A> {
         let infinity = A::Scalar::from_f64(f64::INFINITY);
         let [bound1, bound2] = replace(&mut self.weights.bounds, [infinity; 2]);
         let mut params = *self.model.params();
-        let own = [&mut params.max_velocity1, &mut params.max_velocity2];
-        for ((own, bound), of_recovery) in
-            own.into_iter().zip([bound1, bound2]).zip(self.recovery.bounds_mut())
-        {
-            *own = if bound < *own { bound } else { *own };
-            *of_recovery = *own;
-        }
+        // The second time there are no bounds to take over.
+        let least = |x, y| if x < y { x } else { y };
+        params.max_velocity1 = least(params.max_velocity1, bound1);
+        params.max_velocity2 = least(params.max_velocity2, bound2);
         self.model = Pendulum::new_unchecked(params, State::UPRIGHT);
         self
     }
@@ -319,7 +316,8 @@ impl<A: Arithmetic> Planner<A> {
     /// Whether the regulator succeeds from a state.
     #[must_use]
     pub fn catches(&self, state: State<A::Scalar>) -> bool {
-        state.validate().is_ok() && self.recovery.succeeds::<A>(state, self.weights.bounds)
+        state.validate().is_ok()
+            && self.recovery.succeeds::<A>(self.model.params(), state, self.weights.bounds)
     }
 
     /// Sets the SIMD instructions that plans side by side use: the widest by default.

@@ -18,8 +18,8 @@ use crate::physics::{Joints, Params, Pendulum, State, saturate};
 
 /// The regulator has failed beyond these deviations of θ1 and θ2, rad.
 const WIDE: [f64; 2] = [FRAC_PI_2, 3.1];
-/// The linear model holds for this deviation of θ1, rad, and with dry friction at rest for this part
-/// of the velocity from which on that is constant.
+/// The linear model holds for this deviation of θ1, rad, and at rest with dry friction for this
+/// part of the velocity from which on friction is constant.
 const LINEAR: f64 = 0.3;
 const SLOW: f64 = 0.5;
 /// The regulator has failed after the first time, and recovered if it stays in the region for the
@@ -49,8 +49,8 @@ pub(super) struct Recovery<S> {
     resting: Option<Region<S>>,
     /// The gain at rest is used where |F x|² of its region is below this.
     reach: S,
-    /// The parameters of a simulation, its most steps, and those in the region.
-    params: Params<S>,
+    /// The `dt` of a simulation, s, its most steps, and those in the region.
+    dt: S,
     steps: [u32; 2],
 }
 
@@ -87,7 +87,7 @@ impl<S: Real> Recovery<S> {
             moving: design.region(),
             resting: None,
             reach: S::ONE,
-            params: Params { dt, ..params },
+            dt,
             steps: times.map(|time| (time * units.time / dt.to_f64()) as u32),
         };
         if is_dry {
@@ -109,7 +109,8 @@ impl<S: Real> Recovery<S> {
         // one also brakes, as far as its torque lasts.
         let theta1 = State::<S>::UPRIGHT.theta1 + S::HALF * self.moving.lean();
         let infinity = S::from_f64(f64::INFINITY);
-        if !self.succeeds::<A>(State { theta1, ..State::UPRIGHT }, [infinity; 2]) {
+        let leaning = State { theta1, ..State::UPRIGHT };
+        if !self.succeeds::<A>(machine.params(), leaning, [infinity; 2]) {
             let part = design.widest / design.safe;
             self.reach = S::from_f64(part * part);
             self.cost_to_go = design.cost_to_go();
@@ -117,22 +118,19 @@ impl<S: Real> Recovery<S> {
         }
     }
 
-    /// Bounds at which a simulation clamps velocities.
-    pub(super) fn bounds_mut(&mut self) -> [&mut S; 2] {
-        [&mut self.params.max_velocity1, &mut self.params.max_velocity2]
-    }
-
-    /// Whether the regulator succeeds from a state, without a velocity at its bound.
+    /// Whether the regulator of a machine succeeds from a state, without a velocity at its bound.
     ///
     /// A plan can end in the region where the linear model does not hold, and leave it. So a
     /// simulation has to stay there for some time.
     #[inline(never)] // saves flash
     pub(super) fn succeeds<A: Arithmetic<Scalar = S>>(
         &self,
+        params: &Params<S>,
         state: State<S>,
         bounds: [S; 2],
     ) -> bool {
-        let mut model = Pendulum::<A>::new_unchecked(self.params, state);
+        let params = Params { dt: self.dt, ..*params };
+        let mut model = Pendulum::<A>::new_unchecked(params, state);
         let ([longest, enough], mut inside) = (self.steps, 0);
         for _ in 0..longest {
             let x = difference(model.state(), State::UPRIGHT);

@@ -36,6 +36,7 @@ pub(super) struct Design {
 
 impl Design {
     /// For deviations, rad and rad/s, below some in which the model of a step holds.
+    #[inline(never)]
     pub(super) fn new<S: Real>(
         model: LinearModel<S>,
         Units { time, torque, .. }: Units,
@@ -95,6 +96,7 @@ impl Design {
     }
 
     /// A row for deviations in rad and rad/s, times a number.
+    #[inline(never)]
     fn of_si<S: Real>(&self, mut row: [f64; 4], by: f64) -> [S; 4] {
         row.iter_mut().zip(self.units).for_each(|(x, unit)| *x *= by / unit);
         row.map(S::from_f64)
@@ -133,6 +135,7 @@ impl<S: Real> Region<S> {
 
 /// U with P = Uᵀ U for a symmetric, positive definite P.
 #[expect(clippy::indexing_slicing, reason = "the indices are 0 to 3")]
+#[inline(never)] // saves flash
 fn cholesky(mut p: Matrix) -> Matrix {
     array::from_fn(|i| {
         let i = i % 4; // without it, a Cortex-M0 checks bounds
@@ -147,6 +150,7 @@ fn cholesky(mut p: Matrix) -> Matrix {
 
 /// The largest k x where |U x| ≤ 1: |y| for Uᵀ y = k.
 #[expect(clippy::indexing_slicing, reason = "the indices are 0 to 3")]
+#[inline(never)]
 fn largest(u: &Matrix, mut k: [f64; 4]) -> f64 {
     let y = array::from_fn(|i| {
         let y = k[i] / u[i][i];

@@ -247,8 +247,8 @@ fn no_velocity_of_a_plan_reaches_its_bound() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Gymnasium's links with friction of 0.02 N m s/rad in both joints, ±1 N m and no bounds: a swing-up
-/// takes longer than 20 s.
+/// Gymnasium's links with friction of 0.02 N m s/rad in both joints, ±1 N m and no bounds: a
+/// swing-up takes longer than 20 s.
 #[test]
 fn a_weak_motor_swings_up_against_friction() -> Result<(), Box<dyn Error>> {
     let friction = Joints { joint1: 0.02, joint2: 0.02 };

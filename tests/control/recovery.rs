@@ -238,6 +238,32 @@ fn plans_with_dry_friction_hold() {
     assert!(planned > 2, "{planned}");
 }
 
+/// docs/control.md has these numbers.
+#[test]
+fn a_regulator_keeps_a_machine_with_dry_friction_moving() {
+    let swing = |params: Params, limit: f64, part: f64| {
+        let coulomb = Joints { joint1: part * limit, joint2: part * limit };
+        let params = Params { coulomb, max_velocity1: 1e9, max_velocity2: 1e9, ..params };
+        let planner = Planner::<Damped<Portable>>::new(params, limit).unwrap();
+        let lean = State { theta1: PI - 0.01, ..State::UPRIGHT };
+        let mut machine = Pendulum::<Damped<Portable>>::new(params, lean).unwrap();
+        let mut most = 0.0_f64;
+        for i in 0..8000 {
+            let torque = planner.follow(&[], 0, machine.state());
+            machine.step(saturate(torque, limit)).unwrap();
+            let [x, ..] = difference(machine.state(), State::UPRIGHT);
+            most = if i < 4000 { 0.0 } else { most.max(x.abs()) };
+        }
+        assert_eq!(planner.catches(lean), most < 0.3, "{part} of {limit} N m: {most} rad");
+        (1000.0 * most).round()
+    };
+    let gymnasium = Params { dt: 0.01, ..Params::DEFAULT };
+    assert_eq!([0.003, 0.01].map(|part| swing(gymnasium, 10.0, part)), [11.0, 48.0]);
+    assert!(swing(gymnasium, 10.0, 0.03) > 1000.0);
+    let real = Params { dt: 0.005, friction: Joints::default(), ..real() };
+    assert!([0.003, 0.01, 0.03].iter().all(|part| swing(real, 6.0, *part) > 1000.0));
+}
+
 /// A machine with lengths × a, masses × b, times × √a and torques × a b, which moves alike.
 fn scaled(params: &Params, [a, b]: [f64; 2]) -> Params {
     let root = a.sqrt();

@@ -74,7 +74,7 @@
 #define ACROBOT_ALIGN 16
 
 // Bytes of an acrobot_planner_t.
-#define ACROBOT_PLANNER_SIZE 400
+#define ACROBOT_PLANNER_SIZE 560
 
 // Bytes of an acrobot_action_space_t.
 #define ACROBOT_ACTION_SPACE_SIZE 64

@@ -11,7 +11,7 @@ use crate::data::{acrobot_params_t, acrobot_state_t};
 use crate::memory::{Holder, Span, array, change, check, check_apart, check_result, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, status};
 
-pub const ACROBOT_PLANNER_SIZE: usize = 400;
+pub const ACROBOT_PLANNER_SIZE: usize = 560;
 
 #[repr(C, align(16))]
 pub struct acrobot_planner_t {

@@ -43,9 +43,9 @@ export function regulator(
 ): Regulator;
 
 /**
- * What a plan costs. A larger weight, of at least 0, makes its term smaller. Defaults follow from the
- * machine: T² is the inertia of the straight machine about the fixed joint, divided by the sum of the
- * torque of gravity when it is level and the largest torque u.
+ * What a plan costs. A larger weight, of at least 0, makes its term smaller. Defaults follow from
+ * the machine: T² is the inertia of the straight machine about the fixed joint, divided by the sum
+ * of the torque of gravity when it is level and the largest torque u.
  */
 export interface Cost {
   /** Of 2 − 2 cos x, for the deviation x of each angle from upright, 1/s. Default: [0, 0]. */

@@ -52,7 +52,7 @@ test("a plan is improved in place for other weights and another start", () => {
   const jumps = ({ torques }) =>
     torques.slice(1).reduce((sum, torque, i) => sum + (torque - torques[i]) ** 2, 0);
   const before = jumps(plan);
-  const smooth = new Planner(PARAMS, 7, { torqueChange: 1, angles: [0.1, 0] });
+  const smooth = new Planner(PARAMS, 7, { torqueChange: 10, angles: [0.1, 0] });
   const costs = [1, 30, 30].map((iterations) => smooth.improve(state(0.05), iterations, plan));
   assert.ok(costs[0] > costs[1] && costs[1] >= costs[2], costs.join());
   assert.ok(jumps(plan) < before / 2);
@@ -87,9 +87,16 @@ test("a regulator has the gain with which a planner holds, in both tasks", () =>
   const none = { states: [], torques: [], gains: [] };
   for (const task of ["acrobot", "swingup"]) {
     const { params } = new Acrobot({ task, params: { dt: 0.02, mass2: 1.5 } });
-    const { gain, costToGo } = regulator(params, EYE, 1);
+    // The planner's weights are 1 in the units of the machine: its torque, and a time T.
+    const [limit, { mass1, mass2 }] = [2, params];
+    const [lever, reach] = [params.centerOfMass1, params.length1 + params.centerOfMass2];
+    const inertia =
+      params.inertia1 + mass1 * lever ** 2 + params.inertia2 + mass2 * reach ** 2;
+    const square = inertia / ((mass1 * lever + mass2 * reach) * params.gravity + limit);
+    const q = EYE.map((row, i) => row.map((x) => (i < 2 ? x : x * square)));
+    const { gain, costToGo } = regulator(params, q, 1 / limit ** 2);
     assert.equal(costToGo[1][2], costToGo[2][1]);
-    const planner = new Planner(params, 1);
+    const planner = new Planner(params, limit);
     Object.entries(UPRIGHT).forEach(([name, value], i) => {
       const torque = planner.follow(none, 0, { ...UPRIGHT, [name]: value + 0.25 });
       assert.ok(Math.abs(torque + 0.25 * gain[i]) < 1e-3, `${torque} and ${gain}`);

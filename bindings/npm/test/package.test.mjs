@@ -68,7 +68,7 @@ async function open(html, play = () => {}) {
   return lines;
 }
 
-test("the package has at most 170 KB and these files", () => {
+test("the package has at most 172 KB and these files", () => {
   const report = run("npm", ["pack", "--json", "--dry-run", join(here, "dist")]);
   const [{ name, files, unpackedSize }] = JSON.parse(report);
   const paths = files.map(({ path }) => path).sort();
@@ -77,7 +77,7 @@ test("the package has at most 170 KB and these files", () => {
   );
   const licences = ["APACHE", "MIT", "tiny-inflate"].map((name) => `LICENSE-${name}`);
   assert.deepEqual(paths, [...licences, "README.md", "package.json", ...entries].sort());
-  assert.ok(unpackedSize <= 170_000, `${unpackedSize} bytes`);
+  assert.ok(unpackedSize <= 172_000, `${unpackedSize} bytes`);
   assert.equal(name, "acrobot-rs");
 });
 
