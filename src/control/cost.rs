@@ -56,6 +56,7 @@ impl<S: Modeled> Cost<S> {
     /// # Errors
     ///
     /// A parameter is out of range, or the torque is not finite and above 0.
+    #[inline(never)] // saves flash
     pub fn new(params: &Params<S>, limit: S) -> Result<Self, Error> {
         Range::AboveZero.check("the largest torque", limit.to_f64(), "N m")?;
         params.validate()?;

@@ -286,22 +286,30 @@ fn has_vanished(m: &Matrix) -> bool {
 
 /// The matrix, symmetric to the last digit: products such as G W Gᵀ are so only up to rounding.
 fn symmetric(q: &Matrix, rounding: f64) -> Result<Matrix, ControlError> {
-    let mut symmetric = *q;
-    for (x, &lower) in symmetric.as_flattened_mut().iter_mut().zip(transpose(q).as_flattened()) {
-        let upper = *x;
-        if (upper - lower).abs() > rounding {
-            return Err(ControlError::NotSymmetric { name: "q", upper, lower });
+    #[inline(never)] // saves flash
+    fn check(row: &[f64; 4], column: &[f64; 4], rounding: f64) -> Result<(), ControlError> {
+        for (&upper, &lower) in row.iter().zip(column) {
+            if (upper - lower).abs() > rounding {
+                return Err(ControlError::NotSymmetric { name: "q", upper, lower });
+            }
         }
-        *x = 0.5 * upper + 0.5 * lower;
+        Ok(())
     }
-    Ok(symmetric)
+
+    let mut transposed = transpose(q);
+    for (row, column) in q.iter().zip(&transposed) {
+        check(row, column, rounding)?;
+    }
+    scale(&mut transposed, 0.5); // before the sum, which would overflow
+    add(&mut transposed, 0.5, q);
+    Ok(transposed)
 }
 
 /// Subtracts (column columnᵀ) / pivot for the largest pivot on the diagonal, until none is above
 /// the rounding. Then only rounding remains of a positive semidefinite matrix.
 fn check_semidefinite(q: &Matrix, rounding: f64) -> Result<(), ControlError> {
-    let mut rest = *q;
-    for _ in 0..4 {
+    #[inline(never)] // saves flash
+    fn subtract(rest: &mut Matrix, rounding: f64) {
         let mut greatest = (rounding, [0.0; 4]);
         for (i, row) in rest.iter().enumerate() {
             if let Some(&pivot) = row.get(i)
@@ -314,6 +322,11 @@ fn check_semidefinite(q: &Matrix, rounding: f64) -> Result<(), ControlError> {
         for (x, factor) in rest.iter_mut().zip(row) {
             add_scaled(x, -(factor / pivot), &row);
         }
+    }
+
+    let mut rest = *q;
+    for _ in 0..4 {
+        subtract(&mut rest, rounding);
     }
     match largest(rest.as_flattened()) {
         value if value > rounding => Err(ControlError::NotSemidefinite { name: "q", value }),

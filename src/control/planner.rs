@@ -88,7 +88,7 @@ impl<A: Arithmetic> Planner<A> {
         let recovery = Recovery::new::<A>(params, limit)?;
         cost.check()?;
         let units = Units::new(&params, limit);
-        let model = Pendulum::new_unchecked(params, State::UPRIGHT);
+        let model = Pendulum::new(params, State::UPRIGHT)?;
         Ok(Self {
             recovery,
             weights: Weights::new(cost, params.dt, bounds, units),
@@ -316,8 +316,7 @@ impl<A: Arithmetic> Planner<A> {
     /// Whether the regulator succeeds from a state.
     #[must_use]
     pub fn catches(&self, state: State<A::Scalar>) -> bool {
-        state.validate().is_ok()
-            && self.recovery.succeeds::<A>(self.model.params(), state, self.weights.bounds)
+        self.recovery.succeeds::<A>(self.model.params(), state, self.weights.bounds)
     }
 
     /// Sets the SIMD instructions that plans side by side use: the widest by default.

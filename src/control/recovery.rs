@@ -67,7 +67,7 @@ impl<S: Real> Recovery<S> {
         let is_dry = params.coulomb != none;
         let free = Pendulum::<A>::new(Params { coulomb: none, ..params }, State::UPRIGHT)?;
         let far = f64::INFINITY;
-        let design = Design::new(linearize_step(&free, S::ZERO)?, units, [LINEAR, far, far, far])?;
+        let design = Design::new(&linearize_step(&free, S::ZERO)?, units, [LINEAR, far, far, far])?;
         if design.roughness(PI, params.dt) > if is_dry { ROUGH_DRY } else { ROUGH } {
             let rule = "longer for this scalar, which loses small velocities upright, in";
             let value = params.dt.to_f64();
@@ -75,7 +75,7 @@ impl<S: Real> Recovery<S> {
         }
         let rate = units.time / params.dt.to_f64();
         let [least, most] = FINE;
-        let fine = (design.largest_change() * rate / CHANGE).max(least).min(most);
+        let fine = (design.change * rate / CHANGE).max(least).min(most);
         let own = (rate / fine) as u32;
         let dt = params.dt * S::from_f64(f64::from(own.max(1)));
         let times = if is_dry { TIMES_DRY } else { TIMES };
@@ -90,7 +90,7 @@ impl<S: Real> Recovery<S> {
             dt,
             steps: times.map(|time| (time * units.time / dt.to_f64()) as u32),
         };
-        if is_dry {
+        if A::HAS_FRICTION && is_dry {
             recovery.rest(&machine, units);
         }
         Ok(recovery)
@@ -100,8 +100,8 @@ impl<S: Real> Recovery<S> {
     #[inline(never)]
     fn rest<A: Arithmetic<Scalar = S>>(&mut self, machine: &Pendulum<A>, units: Units) {
         let Ok(model) = linearize_step(machine, S::ZERO) else { return };
-        let slow = SLOW / machine.model().constants.inverse_width.to_f64();
-        let Ok(design) = Design::new(model, units, [LINEAR, f64::INFINITY, slow, slow]) else {
+        let slow = SLOW * units.time / machine.model().constants.inverse_width.to_f64();
+        let Ok(design) = Design::new(&model, units, [LINEAR, f64::INFINITY, slow, slow]) else {
             return;
         };
         self.resting = Some(design.region());
@@ -130,7 +130,7 @@ impl<S: Real> Recovery<S> {
         bounds: [S; 2],
     ) -> bool {
         let params = Params { dt: self.dt, ..*params };
-        let mut model = Pendulum::<A>::new_unchecked(params, state);
+        let Ok(mut model) = Pendulum::<A>::new(params, state) else { return false };
         let ([longest, enough], mut inside) = (self.steps, 0);
         for _ in 0..longest {
             let x = difference(model.state(), State::UPRIGHT);
@@ -150,6 +150,7 @@ impl<S: Real> Recovery<S> {
     }
 
     /// The torque for a deviation, N m, which can be beyond the largest.
+    #[inline(never)]
     pub(super) fn torque(&self, x: [S; 4]) -> S {
         match &self.resting {
             Some(region) if region.square(x) < self.reach => region.torque(x),

@@ -12,7 +12,9 @@ use core::f64::consts::SQRT_2;
 use super::error::ControlError;
 use super::linearize::LinearModel;
 use super::lqr::{Lqr, lqr};
-use super::matrix::{self, Matrix, dot, identity};
+use super::matrix::{
+    self, Matrix, apply, congruence, dot, identity, inner, product, scale, spread,
+};
 use super::units::Units;
 use crate::math::Real;
 use crate::physics::plus_scaled;
@@ -23,84 +25,79 @@ const TORQUE: f64 = 1.0;
 
 /// A regulator and the factor of its cost, in units of the machine: the cost is |U x|².
 pub(super) struct Design {
-    b: [f64; 4],
     lqr: Lqr,
     factor: Matrix,
     /// |U x| in half of the ellipsoid in which the torque lasts, and in the region.
     pub(super) widest: f64,
     pub(super) safe: f64,
-    /// The units of angles and velocities, rad and rad/s, and of the torque, N m.
-    units: [f64; 4],
-    torque: f64,
+    /// The most that the motor changes a velocity in a step.
+    pub(super) change: f64,
+    units: Units,
 }
 
 impl Design {
-    /// For deviations, rad and rad/s, below some in which the model of a step holds.
-    #[inline(never)]
+    /// For deviations below some in which the model of a step holds, in units of the machine.
+    #[inline(never)] // saves flash, and so do products of matrices, which are out of line
     pub(super) fn new<S: Real>(
-        model: LinearModel<S>,
-        Units { time, torque, .. }: Units,
+        model: &LinearModel<S>,
+        units: Units,
         holds: [f64; 4],
     ) -> Result<Self, ControlError> {
-        let units = [1.0, 1.0, 1.0 / time, 1.0 / time];
-        let mut a = model.a.map(|row| row.map(S::to_f64));
-        let mut b = model.b.map(|x| x.to_f64() * torque);
-        for ((row, b), own) in a.iter_mut().zip(&mut b).zip(units) {
-            row.iter_mut().zip(units).for_each(|(x, unit)| *x *= unit / own);
-            *b /= own;
-        }
+        let Units { time, torque, .. } = units;
+        let a = model.a.map(|row| row.map(S::to_f64));
+        let a = product(&with_velocities(time), &product(&a, &with_velocities(1.0 / time)));
+        let b = apply(&with_velocities(time), &model.b.map(|x| x.to_f64() * torque));
         // In f64, because the rounding of P to f32 can be larger than its smallest eigenvalue.
         let lqr = lqr(&LinearModel { a, b }, &identity(), TORQUE)?;
-        let b_p_b = dot(b, lqr.cost_to_go.map(|row| dot(row, b)));
+        let b_p_b = inner(&b, &apply(&lqr.cost_to_go, &b));
         let part = 1.0 / (1.0 + Real::sqrt(TORQUE / (TORQUE + b_p_b)));
         let factor = cholesky(lqr.cost_to_go);
         let widest = 1.0 / (SQRT_2 * part * largest(&factor, lqr.gain));
         let mut safe = widest;
-        for ((row, most), unit) in identity().into_iter().zip(holds).zip(units) {
-            safe = safe.min(most / unit / largest(&factor, row));
+        for (row, most) in identity().into_iter().zip(holds) {
+            safe = safe.min(most / largest(&factor, row));
         }
-        Ok(Self { b, lqr, factor, widest, safe, units, torque })
+        Ok(Self { lqr, factor, widest, safe, change: matrix::largest(&b), units })
     }
 
     /// The weights of each deviation, 1/rad² and s²/rad², and of the torque, 1/(N m)².
     pub(super) fn weights<S: Real>(&self) -> ([S; 4], S) {
-        let weights = self.units.map(|unit| S::from_f64(1.0 / (unit * unit)));
-        (weights, S::from_f64(TORQUE / (self.torque * self.torque)))
+        let Units { time, torque, .. } = self.units;
+        let weights = [1.0, 1.0, time * time, time * time].map(S::from_f64);
+        (weights, S::from_f64(TORQUE / (torque * torque)))
     }
 
     /// P: xᵀ P x is |U x|² of a deviation x, rad and rad/s.
     pub(super) fn cost_to_go<S: Real>(&self) -> Matrix<S> {
-        let mut units = self.units.into_iter();
-        self.lqr.cost_to_go.map(|row| self.of_si(row, 1.0 / units.next().unwrap_or(1.0)))
+        narrow(&congruence(&self.lqr.cost_to_go, &with_velocities(self.units.time)))
     }
 
-    /// The most that the motor changes a velocity in a step, in units of the machine.
-    pub(super) fn largest_change(&self) -> f64 {
-        matrix::largest(&self.b)
-    }
-
-    /// |U x| where θ̇1 is the smallest velocity that an angle near `theta`, rad, notices in a step of
-    /// `dt`, s: as a part of that in the region.
+    /// |U x| where θ̇1 is the smallest velocity that an angle near `theta`, rad, notices in a step
+    /// of `dt`, s: as a part of that in the region.
     pub(super) fn roughness<S: Real>(&self, theta: f64, dt: S) -> f64 {
-        let [.., unit, _] = self.units;
         let column = self.factor.map(|[.., x, _]| x);
-        let lost = S::EPSILON.to_f64() * theta / dt.to_f64() / unit;
-        lost * Real::sqrt(dot(column, column)) / self.safe
+        let lost = S::EPSILON.to_f64() * theta / dt.to_f64() * self.units.time;
+        lost * Real::sqrt(inner(&column, &column)) / self.safe
     }
 
     pub(super) fn region<S: Real>(&self) -> Region<S> {
-        Region {
-            gain: self.of_si(self.lqr.gain, self.torque),
-            factor: self.factor.map(|row| self.of_si(row, 1.0 / self.safe)),
-        }
+        let Units { time, torque, .. } = self.units;
+        let mut factor = product(&self.factor, &with_velocities(time));
+        scale(&mut factor, 1.0 / self.safe);
+        let gain = apply(&with_velocities(time), &self.lqr.gain);
+        Region { gain: gain.map(|x| S::from_f64(x * torque)), factor: narrow(&factor) }
     }
+}
 
-    /// A row for deviations in rad and rad/s, times a number.
-    #[inline(never)]
-    fn of_si<S: Real>(&self, mut row: [f64; 4], by: f64) -> [S; 4] {
-        row.iter_mut().zip(self.units).for_each(|(x, unit)| *x *= by / unit);
-        row.map(S::from_f64)
-    }
+#[inline(never)]
+fn narrow<S: Real>(m: &Matrix) -> Matrix<S> {
+    m.map(|row| row.map(S::from_f64))
+}
+
+/// The matrix that multiplies both velocities.
+#[inline(never)]
+fn with_velocities(by: f64) -> Matrix {
+    spread([1.0, 1.0, by, by])
 }
 
 /// A regulator and its region.
@@ -114,13 +111,12 @@ pub(super) struct Region<S> {
 
 impl<S: Real> Region<S> {
     /// The torque for a deviation, N m.
-    #[inline(always)]
     pub(super) fn torque(&self, x: [S; 4]) -> S {
         -dot(self.gain, x)
     }
 
     /// |F x|².
-    #[inline(always)]
+    #[inline(never)] // saves flash
     pub(super) fn square(&self, x: [S; 4]) -> S {
         let y = self.factor.map(|row| dot(row, x));
         dot(y, y)

@@ -296,7 +296,7 @@ static void arguments_of_a_planner(void)
     float number;
     REJECTED(NULL, acrobot_default_cost(NULL, 1, &cost));
     REJECTED(NULL, acrobot_default_cost(&PARAMS, 1, NULL));
-    REJECTED(NULL, acrobot_default_cost(&PARAMS, 0, &cost));
+    REJECTED(OUT_OF_RANGE, acrobot_default_cost(&PARAMS, 0, &cost));
     ACCEPTED(acrobot_default_cost(&PARAMS, 1, &cost));
     cost.power = -1;
     REJECTED(NULL, acrobot_planner_init(NULL, &PARAMS, 1, NULL, NULL));
