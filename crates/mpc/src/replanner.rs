@@ -60,10 +60,11 @@ impl<const N: usize> Replanner<N> {
     pub fn new(settings: Settings) -> Result<Self, ControlError> {
         let ticks = settings.ticks as f32;
         let params = of_decisions(&settings.params, ticks);
+        let planner = planner(params, settings.limit)?;
         Ok(Self {
             limit: settings.limit,
             ticks,
-            planner: planner(params, settings.limit)?,
+            planner,
             params,
             estimated: settings.params,
             work: Work::Model,
