@@ -51,11 +51,16 @@ impl<S: Real> Lqr<S> {
 /// [`ControlError::Invalid`] for an `r` that is not above 0, and each other [`ControlError`] except
 /// `NotInEquilibrium`.
 pub fn lqr<S: Real>(model: &LinearModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, ControlError> {
-    check_finite("a", model.a.as_flattened())?;
-    check_finite("b", &model.b)?;
-    check_finite("q", q.as_flattened())?;
+    #[inline(never)] // saves flash
+    fn check(name: &'static str, elements: &[f64]) -> Result<(), ControlError> {
+        check_finite(name, elements)
+    }
+
     let [a, q] = [&model.a, q].map(|m| m.map(|row| row.map(S::to_f64)));
     let (b, r) = (model.b.map(S::to_f64), r.to_f64());
+    check("a", a.as_flattened())?;
+    check("b", &b)?;
+    check("q", q.as_flattened())?;
     let rounding = 16.0 * S::EPSILON.to_f64() * largest(q.as_flattened());
     let q = symmetric(&q, rounding)?;
     check_semidefinite(&q, rounding)?;

@@ -35,7 +35,6 @@ pub fn transpose<S: Copy>([p, q, r, s]: &Matrix<S>) -> Matrix<S> {
 }
 
 /// Rejects elements that are not finite.
-#[inline(never)] // saves flash
 pub fn check_finite<S: Real>(name: &'static str, elements: &[S]) -> Result<(), ControlError> {
     match elements.iter().find(|x| !x.is_finite()) {
         Some(x) => Err(ControlError::NotFinite { name, value: x.to_f64() }),

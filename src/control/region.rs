@@ -13,11 +13,10 @@ use super::error::ControlError;
 use super::linearize::LinearModel;
 use super::lqr::{Lqr, lqr};
 use super::matrix::{
-    self, Matrix, apply, congruence, dot, identity, inner, product, scale, spread,
+    self, Matrix, add_scaled, apply, congruence, dot, identity, inner, product, scale, spread,
 };
 use super::units::Units;
 use crate::math::Real;
-use crate::physics::plus_scaled;
 
 /// The weight of the square of the torque, in units of the machine. That of each angle and of each
 /// velocity is 1.
@@ -130,18 +129,21 @@ impl<S: Real> Region<S> {
 }
 
 /// U with P = Uᵀ U for a symmetric, positive definite P.
-#[expect(clippy::indexing_slicing, reason = "the indices are 0 to 3")]
-#[inline(never)] // saves flash
 fn cholesky(mut p: Matrix) -> Matrix {
-    array::from_fn(|i| {
+    /// Row `i`, which is subtracted from P.
+    #[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
+    #[inline(never)] // saves flash
+    fn row(p: &mut Matrix, i: usize) -> [f64; 4] {
         let i = i % 4; // without it, a Cortex-M0 checks bounds
         let root = Real::sqrt(p[i][i]);
         let row = p[i].map(|x| x / root);
         for (other, x) in p.iter_mut().zip(row) {
-            *other = plus_scaled(*other, -x, row);
+            add_scaled(other, -x, &row);
         }
         row
-    })
+    }
+
+    array::from_fn(|i| row(&mut p, i))
 }
 
 /// The largest k x where |U x| ≤ 1: |y| for Uᵀ y = k.
@@ -150,7 +152,7 @@ fn cholesky(mut p: Matrix) -> Matrix {
 fn largest(u: &Matrix, mut k: [f64; 4]) -> f64 {
     let y = array::from_fn(|i| {
         let y = k[i] / u[i][i];
-        k = plus_scaled(k, -y, u[i]);
+        add_scaled(&mut k, -y, &u[i]);
         y
     });
     Real::sqrt(dot(y, y))

@@ -205,10 +205,9 @@ for_f32_and_f64! {
                 let of_coulomb = coulomb.joint1 * link2 + coulomb.joint2 * inertia1;
                 let rest = STABLE as S - of_viscous / determinant * params.dt;
                 let least = 1.5 * of_coulomb / determinant * params.dt / rest;
-                if rest > 0.0 {
-                    width = width.max(least);
-                } else {
-                    return S::INFINITY;
+                let least = if rest > 0.0 { least } else { S::INFINITY };
+                if least > width {
+                    width = least;
                 }
                 ends = left;
             }

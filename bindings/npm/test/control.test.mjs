@@ -16,7 +16,7 @@ const EYE = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
 const PARAMS = { dt: 0.01 };
 const planned = () => {
   const planner = new Planner(PARAMS, 7);
-  return [planner, planner.plan(HANGING, { steps: 1100, seed: 4 })];
+  return [planner, planner.plan(HANGING, { steps: 1100, seed: 0 })];
 };
 const knot = ({ states, gains }, i) =>
   [states, gains].map((rows) => [...rows.slice(4 * i, 4 * i + 4)]);

@@ -111,7 +111,7 @@ def test_a_plan_has_the_bits_of_rust():
     planner = control.Planner(12, env, clamps=True, **weights)
     plan = planner.plan([0.1, 0.2, 0.3, 0.4], steps=300, seed=5)
     digests = [crc32(each.tobytes()) for each in (plan.states, plan.torques, plan.gains)]
-    assert digests == [382518841, 3712073996, 1712217085]  # of Rust's `search`
+    assert digests == [2918004515, 4238371150, 2504277938]  # of Rust's `search`
 
 
 def test_a_search_can_be_interrupted_or_find_no_plan():

@@ -26,7 +26,7 @@ pub fn params(rate: u32) -> Params<f32> {
 /// Plans from hanging at rest, with a largest torque, N m, and decisions per second.
 pub fn plan(limit: f32, rate: u32, memory: &mut Memory) -> Result<&mut [Knot<f32>], NoPlan> {
     let mut planner = Planner::<Fast>::new(params(rate), limit)?;
-    planner.plan(State::HANGING, 64, &mut Pcg64::new(4), memory)
+    planner.plan(State::HANGING, 64, &mut Pcg64::new(0), memory)
 }
 
 /// A digest of every bit of the plan, and of the states of an acrobot that follows it.
@@ -52,4 +52,4 @@ pub fn planned() -> u64 {
     plan(LIMIT, RATE, &mut memory).map_or(0, |plan| digest(plan))
 }
 
-pub const PLAN: u64 = 0x0684_a214_b09f_816d;
+pub const PLAN: u64 = 0x5c85_3777_e0fb_48ab;
