@@ -40,7 +40,7 @@ pub(crate) use arithmetic::{check_params, default_model, model};
 pub use bounds::{saturate, wrap};
 pub(crate) use friction::{coulomb_friction, friction};
 pub(crate) use geometry::{directions, positions};
-pub(crate) use model::{Constants, Defaults, Given, Model, Modeled};
+pub(crate) use model::{Constants, Defaults, Given, Model, Modeled, WIDTH};
 pub(crate) use params::FIELDS;
 pub use params::{Dynamics, Joints, Params};
 pub use pendulum::Pendulum;

@@ -101,7 +101,8 @@ fn drawn_rotors_are_those_of_machines() {
         Ok(())
     };
     assert_eq!(draw(1.117), Ok(()));
-    let rule = "rotor must be below √((inertia1 + m1 lc1²) inertia2) if one is drawn, in kg m²";
+    let rule =
+        "rotor must be below √((inertia1 + m1 lc1²) inertia2) where one of them is drawn, in kg m²";
     assert!(draw(1.119).unwrap_err().starts_with(rule));
 }
 

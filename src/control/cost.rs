@@ -29,7 +29,7 @@ pub struct Cost<S = f64> {
     pub height: S,
     /// `below` costs half where the tip is so far below `height`, m; above 0.
     pub margin: S,
-    /// Of ln(1 + e), where e is 1 for an end that the regulator surely holds.
+    /// Of ln(1 + e), where e is 1 at the border of the region in which the regulator holds.
     pub arrival: S,
 }
 
@@ -50,8 +50,8 @@ const LEAST: f64 = 1e-10;
 impl<S: Modeled> Cost<S> {
     /// Weights with which most tries of a swing-up succeed: the acrobot gets up early, with little
     /// torque. The height is that of the upright tip, the margin a tenth of it. The weights follow
-    /// from the size of the machine and from its largest torque, N m, so machines of one shape have
-    /// the same plans in other units.
+    /// from the size of the machine and from its largest torque, N m, so without
+    /// Coulomb friction machines of one shape have the same plans in other units.
     ///
     /// # Errors
     ///

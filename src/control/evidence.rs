@@ -10,7 +10,7 @@ use super::error::ControlError;
 use super::matrix::check_finite;
 use crate::error::{Error, Range};
 use crate::math::Real;
-use crate::physics::{Joints, Params};
+use crate::physics::{Joints, Params, WIDTH};
 
 /// The numbers that a motion tells.
 const N: usize = 10;
@@ -20,9 +20,6 @@ const FRICTION: usize = 6;
 const UNITS: [&str; FRICTION] = ["kg m²", "kg m²", "kg m²", "kg m", "kg m", "kg m²"];
 /// Combinations whose evidence is below this part of the largest are not determined.
 const UNDETERMINED: f64 = 1e-10;
-/// The velocity below which Coulomb friction is smooth, rad/s, as in a step that is short. A real
-/// machine has no such velocity, so this unit is that of the model.
-const WIDTH: f64 = 0.02;
 
 /// A sample of a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -200,6 +197,7 @@ fn terms(
     let (g1, g2) = (gravity * libm::sin(theta1), gravity * libm::sin(theta1 + theta2));
     let (sin2, cos2) = (libm::sin(theta2), libm::cos(theta2));
     let coulomb = |v: f64| {
+        // As in a step that is short.
         let x = (v / WIDTH).clamp(-1.0, 1.0);
         x * (1.5 - 0.5 * x * x)
     };

@@ -10,12 +10,13 @@ use crate::physics::{Params, Pendulum, State, wrap};
 // Times, in T = √(l / g), where l is the distance of the second centre of mass from the fixed joint
 // while the elbow is straight. Masses and inertias are not known yet. For RealAIGym's machine these
 // are 0.2, 0.3, 0.5 and 0.8 s.
-/// The windows that are tried, and the one that counts if none predicts.
+/// The windows that are tried.
 const WINDOWS: [f64; 3] = [0.93, 1.4, 2.32];
-/// Half of the parabolas that are tried, if that is more angles than these.
+/// Half of the parabolas that are tried: at least so many samples, and so long.
 const HALVES: [(usize, f64); 4] = [(1, 0.01), (2, 0.02), (3, 0.03), (5, 0.05)];
-/// How far the rest of a recording is predicted, and half of the parabola of its first state.
+/// How far the rest of a recording is predicted.
 const AHEAD: f64 = 3.715;
+/// Half of the parabola of a first state.
 const FIRST: (usize, f64) = (3, 0.03);
 
 /// Identifies a machine: its parameters, and the numbers that they follow from.
@@ -42,9 +43,11 @@ pub fn identify(
         Ok::<_, ControlError>((found.params(given)?, found))
     };
     let windows = WINDOWS.map(|window| in_steps(&given, (8, window)));
-    let [.., longest] = windows;
-    let (mut chosen, mut least) = ((2, longest), f64::INFINITY);
-    for half in HALVES.map(|half| in_steps(&given, half)) {
+    let halves = HALVES.map(|half| in_steps(&given, half));
+    // These count where no recording is long enough for a prediction, whose error is then 0.
+    let ([.., longest], [_, short, ..]) = (windows, halves);
+    let (mut chosen, mut least) = ((short, longest), f64::INFINITY);
+    for half in halves {
         for window in windows {
             let Ok((params, _)) = fit(3, half, window) else { continue };
             let mut error = 0.0;
@@ -52,7 +55,7 @@ pub fn identify(
                 let last = samples.get(samples.len() * 3 / 4..).unwrap_or(samples);
                 error += prediction_error(params, last, in_steps(&given, (8, AHEAD)))?;
             }
-            if error < least {
+            if error > 0.0 && error < least {
                 (chosen, least) = ((half, window), error);
             }
         }

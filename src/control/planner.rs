@@ -65,7 +65,8 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// # Errors
     ///
-    /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
+    /// A parameter is out of range, the torque is not finite and above 0, there is no regulator, or
+    /// `dt` is so short that the scalar loses small velocities upright.
     pub fn new(params: Params<A::Scalar>, limit: A::Scalar) -> Result<Self, ControlError> {
         Self::with_cost(params, limit, Cost::new(&params, limit)?)
     }

@@ -1,7 +1,7 @@
 //! The regulator of the upright position with a bounded torque, and from which states it recovers.
 //!
-//! With dry friction there are two regulators. At rest dry friction acts as much viscous friction
-//! does, in motion as little, and the gains for both have opposite signs.
+//! With dry friction there are two regulators. At rest dry friction acts like strong viscous
+//! friction, in motion hardly at all, and the gains for both have opposite signs.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -22,16 +22,18 @@ const WIDE: [f64; 2] = [FRAC_PI_2, 3.1];
 /// part of the velocity from which on friction is constant.
 const LINEAR: f64 = 0.3;
 const SLOW: f64 = 0.5;
-/// The regulator has failed after the first time, and recovered if it stays in the region for the
-/// second one, in units of the machine. Dry friction can keep the machine moving for ever: then it
-/// has to stay there for longer.
+/// The regulator has failed if it has not recovered within the first time. It has recovered when it
+/// has stayed in the region for the second one. Dry friction can keep the machine moving for ever,
+/// so it has to stay for longer then. Units of the machine.
 const TIMES: [f64; 2] = [12.0, 0.75];
 const TIMES_DRY: [f64; 2] = [40.0, 20.0];
-/// Rounding acts as dry friction does. From this part of the region on it takes the machine out.
+/// Rounding acts as dry friction does. If the velocities that it loses are more than this part of
+/// the region, the regulator does not hold.
 const ROUGH: f64 = 1.0;
 const ROUGH_DRY: f64 = 0.1;
-/// A simulation takes at most about so many steps in a unit of time, however short those of the
-/// machine are: so many that the motor changes a velocity by at most a tenth of a unit in a step.
+/// A simulation takes so many steps in a unit of time that the motor changes a velocity by at most
+/// `CHANGE` in a step, but no fewer and no more than these. They are whole steps of the machine, so
+/// there may be twice as many, and fewer if the machine takes fewer.
 const FINE: [f64; 2] = [50.0, 1000.0];
 const CHANGE: f64 = 0.1;
 

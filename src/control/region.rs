@@ -1,8 +1,8 @@
 //! A linear-quadratic regulator of the upright position, and the region in which its torque lasts.
 //!
-//! A regulator of a step stabilizes with the part κ = 1 / (1 + √(R / (R + Bᵀ P B))) of its gain,
-//! too, also if the part changes with each step: with a half for short steps, and nearly 1 where
-//! the torque costs little. So as long as it wants at most 1/κ of the largest torque u, xᵀ P x
+//! In steps, a regulator stabilizes with any part of its gain from κ to 1, also if the part changes
+//! from step to step: κ = 1 / (1 + √(R / (R + Bᵀ P B))) is a half for short steps, and nearly 1
+//! where the torque costs little. So while it wants at most 1/κ times the largest torque u, xᵀ P x
 //! falls. The largest ellipsoid of such x is xᵀ P x ≤ (u/κ)² / (K P⁻¹ Kᵀ). A state in half of it,
 //! near enough to upright for the linear model to hold, is in the region.
 
@@ -51,10 +51,10 @@ impl Design {
         let b_p_b = inner(&b, &apply(&lqr.cost_to_go, &b));
         let part = 1.0 / (1.0 + Real::sqrt(TORQUE / (TORQUE + b_p_b)));
         let factor = cholesky(lqr.cost_to_go);
-        let widest = 1.0 / (SQRT_2 * part * largest(&factor, lqr.gain));
+        let widest = 1.0 / (SQRT_2 * part * farthest(&factor, lqr.gain));
         let mut safe = widest;
         for (row, most) in identity().into_iter().zip(holds) {
-            safe = safe.min(most / largest(&factor, row));
+            safe = safe.min(most / farthest(&factor, row));
         }
         Ok(Self { lqr, factor, widest, safe, change: matrix::largest(&b), units })
     }
@@ -149,7 +149,7 @@ fn cholesky(mut p: Matrix) -> Matrix {
 /// The largest k x where |U x| ≤ 1: |y| for Uᵀ y = k.
 #[expect(clippy::indexing_slicing, reason = "the indices are 0 to 3")]
 #[inline(never)]
-fn largest(u: &Matrix, mut k: [f64; 4]) -> f64 {
+fn farthest(u: &Matrix, mut k: [f64; 4]) -> f64 {
     let y = array::from_fn(|i| {
         let y = k[i] / u[i][i];
         add_scaled(&mut k, -y, &u[i]);

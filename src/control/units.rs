@@ -3,8 +3,8 @@
 use crate::math::Real;
 use crate::physics::Params;
 
-/// A time and two torques. Constants of this module are in these units, so that none has the scale
-/// of a metre, a kilogram or a second. They are roots and products, so powers of 4 and 2 in lengths
+/// A time and two torques. The constants of `control` are in these units, so that none has the
+/// scale of a metre, a kilogram or a second. They are roots and products, so powers of 4 and 2 in lengths
 /// and masses change no digit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Units {

@@ -17,7 +17,7 @@ pub enum Form {
 /// The velocity, rad/s, from which on Coulomb friction is constant, if dt allows it. A machine that
 /// friction holds creeps at less than this velocity, whatever its size: docs/equations.md has what
 /// that means for small and large machines.
-const WIDTH: f64 = 0.02;
+pub(crate) const WIDTH: f64 = 0.02;
 /// RK4 is stable up to a rate of 2.78/dt. With Coulomb friction the rate is at most this.
 const STABLE: f64 = 2.5;
 

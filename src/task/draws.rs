@@ -200,7 +200,7 @@ impl<S: Modeled> Draws<S> {
         let r = least.rotor.abs().max(most.rotor.abs());
         let is_below = r + 16.0 * S::EPSILON.to_f64() * (s + k) < s; // false for NaN
         if low != high && r > 0.0 && !is_below {
-            let rule = "below √((inertia1 + m1 lc1²) inertia2) if one is drawn, in";
+            let rule = "below √((inertia1 + m1 lc1²) inertia2) where one of them is drawn, in";
             return Err(Error::OutOfRange { name: "rotor", value: r, unit: "kg m²", rule });
         }
         Ok(())

@@ -220,9 +220,8 @@ fn lives_on<A: Arithmetic>() {
         let limit = 9.81 * params.mass2 * params.length2;
         let angle = decades(&mut rng, -5.0, -2.5);
         let torque = limit * decades(&mut rng, -4.0, -1.0);
-        let noise = Noise { angle, torque };
-        let noise =
-            Noise { angle: A::Scalar::from_f64(angle), torque: A::Scalar::from_f64(noise.torque) };
+        let [of_angle, of_torque] = [angle, torque].map(A::Scalar::from_f64);
+        let noise = Noise { angle: of_angle, torque: of_torque };
         let mut estimator = Estimator::<A>::new(params.cast(), noise).unwrap();
         for _ in 0..i % 20 {
             let size = decades(&mut rng, -3.0, if i % 2 == 0 { 1.0 } else { 25.0 });

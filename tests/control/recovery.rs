@@ -12,7 +12,7 @@ use acrobot::physics::{Joints, Pendulum, saturate};
 use acrobot::{Fast, Params, Portable, State};
 
 use crate::cast;
-use crate::estimator::real;
+use crate::estimator::{real, scaled};
 
 /// The machine's time √(I / F), s, written again.
 pub fn time(params: &Params, limit: f64) -> f64 {
@@ -29,8 +29,8 @@ fn weight(params: &Params) -> f64 {
 }
 
 /// Whether the machine that follows a plan is upright from 36 to 40 of its times after the plan:
-/// both links within 0.01 rad. Dry friction keeps a machine moving for ever, and so does `f32` in
-/// short steps: then it holds if link 1 stays within 0.3 rad.
+/// both links within 0.01 rad. Dry friction keeps a machine moving for ever, and so does `f32` at
+/// more than 100 steps in that time: then it holds if link 1 stays within 0.3 rad.
 pub fn holds<A: Arithmetic>(
     planner: &Planner<A>,
     mut machine: Pendulum<A>,
@@ -99,18 +99,26 @@ fn machine(seed: u64, friction: Friction) -> (Params, f64, Pcg64) {
 }
 
 /// The seeds of machines: as many as the variable `MACHINES` says, from `SEED` on.
-fn seeds(machines: u64) -> impl Iterator<Item = u64> {
+fn seeds(machines: u64) -> Vec<u64> {
     let number = |name, default| env::var(name).map_or(default, |text| text.parse().unwrap());
     let (first, machines) = (number("SEED", 0), number("MACHINES", machines));
     println!("SEED={first} MACHINES={machines}");
-    (0..machines).map(move |i| first.wrapping_mul(1_000_000).wrapping_add(i))
+    (0..machines).map(|i| first.wrapping_mul(1_000_000).wrapping_add(i)).collect()
 }
 
 /// How many of some states near the border of what the motor can hold the regulator accepts, how
 /// many of these fall, and how many others would be held.
 fn caught<A: Arithmetic>(params: &Params, limit: f64, states: u32, rng: &mut Pcg64) -> [u32; 3] {
     let (time, cast_params, [limit]) = (time(params, limit), params.cast(), cast([limit]));
-    let Ok(planner) = Planner::<A>::new(cast_params, limit) else { return [0; 3] };
+    let planner = match Planner::<A>::new(cast_params, limit) {
+        Ok(planner) => planner,
+        // `f32` cannot hold at each rate.
+        Err(error) => {
+            let is_too_short = error.to_string().starts_with("dt must be longer");
+            assert!(is_too_short && size_of::<A::Scalar>() == 4, "{params:?}: {error}");
+            return [0; 3];
+        }
+    };
     let mut counts = [0; 3];
     for _ in 0..states {
         let size = uniform(rng, -6.0, 0.0).exp();
@@ -168,11 +176,12 @@ fn accepted_states_are_held_and_few_others_would_be() {
 #[test]
 fn accepted_states_of_random_machines_are_held() {
     let mut counts = [[0; 3]; 2];
-    for seed in seeds(120) {
+    let seeds = seeds(120);
+    for &seed in &seeds {
         let friction = [Friction::None, Friction::Viscous, Friction::Dry][seed as usize % 3];
         let (params, limit, mut rng) = machine(seed, friction);
-        // Each tenth machine is controlled at up to 10,000 steps of its time.
-        let (fast, states) = if seed % 10 == 0 { (1e4, 8) } else { (300.0, 40) };
+        // Each seventh machine is controlled at up to 10,000 steps of its time.
+        let (fast, states) = if seed % 7 == 0 { (1e4, 8) } else { (300.0, 40) };
         let rate = uniform(&mut rng, f64::ln(10.0), f64::ln(fast)).exp();
         let params = Params { dt: time(&params, limit) / rate, ..params };
         let found = match seed % 2 {
@@ -185,7 +194,8 @@ fn accepted_states_of_random_machines_are_held() {
     }
     println!("accepted, fallen and refused, without and with dry friction: {counts:?}");
     let [[accepted, _, missed], [with_dry, ..]] = counts;
-    assert!(accepted > 500 && missed <= accepted / 100 && with_dry > 50, "{counts:?}");
+    let least = 5 * seeds.len() as u32;
+    assert!(accepted > least && missed <= accepted / 100 && 5 * with_dry > least, "{counts:?}");
 }
 
 /// Whether a random machine has a plan, which holds.
@@ -204,7 +214,8 @@ fn is_planned<A: Arithmetic>(seed: u64, friction: Friction, tries: u32) -> bool 
 fn plans_for_random_machines_hold() {
     let mut planned = [0; 3];
     let (machines, tries) = if cfg!(debug_assertions) { (8, 16) } else { (100, 32) };
-    for seed in seeds(machines) {
+    let seeds = seeds(machines);
+    for &seed in &seeds {
         for (i, friction) in [Friction::None, Friction::Viscous, Friction::Dry].iter().enumerate() {
             planned[i] += u64::from(match seed % 2 {
                 0 => is_planned::<Damped<Fast>>(seed, *friction, tries),
@@ -213,7 +224,9 @@ fn plans_for_random_machines_hold() {
         }
     }
     println!("planned without friction, with viscous and with dry friction: {planned:?}");
-    assert!(planned.iter().sum::<u64>() > machines / 3, "{planned:?}");
+    // A half have a plan, and a third with dry friction, but there may be few machines.
+    let machines = seeds.len() as u64;
+    assert!(planned[0] + planned[1] > machines / 3 && 16 * planned[2] > machines, "{planned:?}");
 }
 
 /// RealAIGym's machine and Gymnasium's, with friction from which plans fell.
@@ -236,6 +249,30 @@ fn plans_with_dry_friction_hold() {
         }
     }
     assert!(planned > 2, "{planned}");
+}
+
+/// Without a plan a swing-up does not depend on the rate: from hanging at rest, and from a few mrad
+/// beside upright.
+#[test]
+fn decisions_hold_at_any_rate() {
+    let free = Params { max_velocity1: 1e9, max_velocity2: 1e9, ..Params::DEFAULT };
+    let time = time(&free, 10.0);
+    for rate in [10.0, 100.0, 1000.0, 10_000.0] {
+        let params = Params { dt: time / rate, ..free };
+        let held = [0.1, -0.1, 3.137, -3.13].map(|theta1| {
+            let start = State { theta1, ..State::HANGING };
+            let mut planner = Planner::<Portable>::new(params, 10.0).unwrap();
+            let mut machine = Pendulum::<Portable>::new(params, start).unwrap();
+            for _ in 0..(60.0 * rate) as u32 {
+                let torque = planner.decide(machine.state()).unwrap();
+                machine.step(torque).unwrap();
+            }
+            let [x1, x2, ..] = difference(machine.state(), State::UPRIGHT);
+            x1.abs().max(x2.abs()) < 0.05
+        });
+        let swung_up = held[..2].iter().filter(|held| **held).count();
+        assert!(swung_up > 0 && held[2] && held[3], "{rate} steps in T: {held:?}");
+    }
 }
 
 /// docs/control.md has these numbers.
@@ -264,30 +301,10 @@ fn a_regulator_keeps_a_machine_with_dry_friction_moving() {
     assert!([0.003, 0.01, 0.03].iter().all(|part| swing(real, 6.0, *part) > 1000.0));
 }
 
-/// A machine with lengths × a, masses × b, times × √a and torques × a b, which moves alike.
-fn scaled(params: &Params, [a, b]: [f64; 2]) -> Params {
-    let root = a.sqrt();
-    let both = |Joints { joint1, joint2 }, by| Joints { joint1: joint1 * by, joint2: joint2 * by };
-    Params {
-        length1: a * params.length1,
-        length2: a * params.length2,
-        center_of_mass1: a * params.center_of_mass1,
-        center_of_mass2: a * params.center_of_mass2,
-        mass1: b * params.mass1,
-        mass2: b * params.mass2,
-        inertia1: a * a * b * params.inertia1,
-        inertia2: a * a * b * params.inertia2,
-        dt: root * params.dt,
-        friction: both(params.friction, a * b * root),
-        coulomb: both(params.coulomb, a * b),
-        ..*params
-    }
-}
-
 /// A plan, decisions and accepted states of a machine, in numbers that are equal for all scales.
 fn results<A: Arithmetic>(params: &Params, limit: f64, [a, b]: [f64; 2], seed: u64) -> Vec<f64> {
     let (root, torque) = (a.sqrt(), a * b);
-    let (params, [limit]) = (scaled(params, [a, b]).cast(), cast([torque * limit]));
+    let (params, [limit]) = (scaled(params, a, b, root).cast(), cast([torque * limit]));
     let mut planner = Planner::<A>::new(params, limit).unwrap();
     let rng = &mut Pcg64::new(seed);
     let mut plan = [Knot::EMPTY; 60];

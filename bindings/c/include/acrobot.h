@@ -280,7 +280,7 @@ typedef struct {
   float height;
   // `below` costs half where the tip is so far below `height`, m; above 0.
   float margin;
-  // Of ln(1 + e), where e is 1 for an end that the regulator surely holds.
+  // Of ln(1 + e), where e is 1 at the border of the region in which the regulator holds.
   float arrival;
 } acrobot_cost_t;
 

@@ -10,8 +10,8 @@ use crate::controller::{Arithmetic, Controller, Settings};
 
 /// The part of the motor's torque that plans use. The rest corrects deviations.
 const PLANNED: f32 = 0.9;
-/// The iterations of a slice. They are few, so a plan has to change gently: its torque costs more
-/// than by default, by the first factor, and the time below by the second.
+/// The iterations of a slice. They are few, so a plan must change gently: factors of the default
+/// weights of the torque and of the time below.
 const ITERATIONS: u32 = 4;
 const GENTLE: [f32; 2] = [16.0, 2.5];
 /// After so many slices, one takes the estimated parameters.
@@ -29,7 +29,7 @@ enum Work {
     Due(bool),
 }
 
-/// What the main loop does. It needs 0.6 KB beside a plan of 44 bytes a decision, and several KB of
+/// What the main loop does. It needs 0.8 KB beside a plan of 44 bytes a decision, and several KB of
 /// stack.
 #[derive(Clone, Debug)]
 pub struct Replanner<const N: usize> {

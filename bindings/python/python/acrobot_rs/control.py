@@ -248,7 +248,7 @@ class Identified:
 
 
 def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env) -> Identified:
-    """Identify a machine from recordings in which both links move, such as ten seconds.
+    """Identify a machine from recordings in which both links move, for ten seconds or so.
 
     A recording has angles, ``(n, 2)``, rad, without jumps by whole turns, and the motor's torques,
     ``(n,)``, N m, or those of both joints, ``(n, 2)``, each until the next sample. ``env`` has
