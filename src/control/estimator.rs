@@ -146,8 +146,8 @@ impl<A: Arithmetic, const K: usize> Estimator<A, K> {
         self.model.params()
     }
 
-    /// The standard deviations of the state, rad and rad/s. `None` before a measurement, and after an
-    /// error of [`step`](Self::step).
+    /// The standard deviations of the state, rad and rad/s. `None` before a measurement, and after
+    /// an error of [`step`](Self::step).
     #[must_use]
     pub fn deviations(&self) -> Option<[A::Scalar; 4]> {
         let root = |x| if x > A::Scalar::ZERO { A::Scalar::sqrt(x) } else { A::Scalar::ZERO };

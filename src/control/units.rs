@@ -4,8 +4,8 @@ use crate::math::Real;
 use crate::physics::Params;
 
 /// A time and two torques. The constants of `control` are in these units, so that none has the
-/// scale of a metre, a kilogram or a second. They are roots and products, so powers of 4 and 2 in lengths
-/// and masses change no digit.
+/// scale of a metre, a kilogram or a second. They are roots and products, so powers of 4 and 2 in
+/// lengths and masses change no digit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Units {
     /// T = √(I / F), s, where I is the inertia of the straight machine about the fixed joint.
