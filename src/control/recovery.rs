@@ -14,7 +14,7 @@ use super::units::Units;
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::Real;
-use crate::physics::{Joints, Params, Pendulum, State, saturate};
+use crate::physics::{Joints, Params, Pendulum, State, plus_scaled, saturate};
 
 /// The regulator has failed beyond these deviations of θ1 and θ2, rad.
 const WIDE: [f64; 2] = [FRAC_PI_2, 3.1];
@@ -25,17 +25,20 @@ const SLOW: f64 = 0.5;
 /// The regulator has failed if it has not recovered within the first time. It has recovered when it
 /// has stayed in the region for the second one. Dry friction can keep the machine moving for ever,
 /// so it has to stay for longer then. Units of the machine.
-const TIMES: [f64; 2] = [12.0, 0.75];
+const TIMES: [f64; 2] = [12.0, 3.0];
 const TIMES_DRY: [f64; 2] = [40.0, 20.0];
 /// Rounding acts as dry friction does. If the velocities that it loses are more than this part of
 /// the region, the regulator does not hold.
 const ROUGH: f64 = 1.0;
 const ROUGH_DRY: f64 = 0.1;
-/// A simulation takes so many steps in a unit of time that the motor changes a velocity by at most
-/// `CHANGE` in a step, but no fewer and no more than these. They are whole steps of the machine, so
+/// A simulation takes so many steps in a unit of time that the regulator changes its torque by at most
+/// the part `CHANGE` in a step, but no fewer and no more than these. They are whole steps of the machine, so
 /// there may be twice as many, and fewer if the machine takes fewer.
 const FINE: [f64; 2] = [50.0, 1000.0];
 const CHANGE: f64 = 0.1;
+/// Where these are longer than the machine's, it begins so much farther from upright, because the
+/// border of what the regulator holds moves with the steps.
+const FARTHER: f64 = 1.02;
 
 /// A regulator whose torque is bounded.
 #[derive(Clone, Debug)]
@@ -51,7 +54,9 @@ pub(super) struct Recovery<S> {
     resting: Option<Region<S>>,
     /// The gain at rest is used where |F x|² of its region is below this.
     reach: S,
-    /// The `dt` of a simulation, s, its most steps, and those in the region.
+    /// How much farther from upright a simulation begins, its `dt`, s, its most steps, and those in
+    /// the region.
+    farther: S,
     dt: S,
     steps: [u32; 2],
 }
@@ -89,6 +94,7 @@ impl<S: Real> Recovery<S> {
             moving: design.region(),
             resting: None,
             reach: S::ONE,
+            farther: if own > 1 { S::from_f64(FARTHER) } else { S::ONE },
             dt,
             steps: times.map(|time| (time * units.time / dt.to_f64()) as u32),
         };
@@ -132,10 +138,12 @@ impl<S: Real> Recovery<S> {
         bounds: [S; 2],
     ) -> bool {
         let params = Params { dt: self.dt, ..*params };
-        let Ok(mut model) = Pendulum::<A>::new(params, state) else { return false };
+        let upright = State::UPRIGHT.into();
+        let start = plus_scaled(upright, self.farther, deviation(state));
+        let Ok(mut model) = Pendulum::<A>::new(params, start.into()) else { return false };
         let ([longest, enough], mut inside) = (self.steps, 0);
         for _ in 0..longest {
-            let x = difference(model.state(), State::UPRIGHT);
+            let x = deviation(model.state());
             if !(is_near(x) && is_below(model.state(), bounds)) {
                 return false;
             }
@@ -162,7 +170,7 @@ impl<S: Real> Recovery<S> {
 
     /// What the state after a plan costs, with a weight.
     pub(super) fn arrival(&self, weight: S, end: [S; 4]) -> S {
-        let x = difference(end.into(), State::UPRIGHT);
+        let x = deviation(end.into());
         let excess = dot(self.apply(x), x) / self.near;
         weight * S::from_f64(libm::log1p(excess.to_f64()))
     }
@@ -171,7 +179,7 @@ impl<S: Real> Recovery<S> {
     /// the torque before. Where the logarithm is concave, the curvature is that without it.
     #[inline(never)]
     pub(super) fn arrival_slopes(&self, weight: S, end: [S; 4]) -> [S; 20] {
-        let x = difference(end.into(), State::UPRIGHT);
+        let x = deviation(end.into());
         let [s1, s2, s3, s4] = self.apply(x);
         let weight = (weight + weight) / (dot([s1, s2, s3, s4], x) + self.near);
         let [p1, p2, p3, p4] = self.cost_to_go;
@@ -187,6 +195,12 @@ impl<S: Real> Recovery<S> {
     fn apply(&self, x: [S; 4]) -> [S; 4] {
         self.cost_to_go.map(|row| dot(row, x))
     }
+}
+
+/// The deviation from upright.
+#[inline(never)] // saves flash
+fn deviation<S: Real>(state: State<S>) -> [S; 4] {
+    difference(state, State::UPRIGHT)
 }
 
 /// Whether the regulator has not failed.

@@ -13,7 +13,7 @@ use super::error::ControlError;
 use super::linearize::LinearModel;
 use super::lqr::{Lqr, lqr};
 use super::matrix::{
-    self, Matrix, add_scaled, apply, congruence, dot, identity, inner, product, scale, spread,
+    Matrix, add_scaled, apply, congruence, dot, identity, inner, product, scale, spread,
 };
 use super::units::Units;
 use crate::math::Real;
@@ -29,7 +29,7 @@ pub(super) struct Design {
     /// |U x| in half of the ellipsoid in which the torque lasts, and in the region.
     pub(super) widest: f64,
     pub(super) safe: f64,
-    /// The most that the motor changes a velocity in a step.
+    /// The part of a torque by which the regulator changes it in a step.
     pub(super) change: f64,
     units: Units,
 }
@@ -56,7 +56,7 @@ impl Design {
         for (row, most) in identity().into_iter().zip(holds) {
             safe = safe.min(most / farthest(&factor, row));
         }
-        Ok(Self { lqr, factor, widest, safe, change: matrix::largest(&b), units })
+        Ok(Self { lqr, factor, widest, safe, change: inner(&lqr.gain, &b), units })
     }
 
     /// The weights of each deviation, 1/rad² and s²/rad², and of the torque, 1/(N m)².

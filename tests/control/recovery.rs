@@ -176,7 +176,8 @@ fn accepted_states_are_held_and_few_others_would_be() {
 #[test]
 fn accepted_states_of_random_machines_are_held() {
     let mut counts = [[0; 3]; 2];
-    let seeds = seeds(120);
+    // The last one fell while the simulation took steps of T/50.
+    let seeds = [seeds(120), vec![1_000_155]].concat();
     for &seed in &seeds {
         let friction = [Friction::None, Friction::Viscous, Friction::Dry][seed as usize % 3];
         let (params, limit, mut rng) = machine(seed, friction);
