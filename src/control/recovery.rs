@@ -31,9 +31,9 @@ const TIMES_DRY: [f64; 2] = [40.0, 20.0];
 /// the region, the regulator does not hold.
 const ROUGH: f64 = 1.0;
 const ROUGH_DRY: f64 = 0.1;
-/// A simulation takes so many steps in a unit of time that the regulator changes its torque by at most
-/// the part `CHANGE` in a step, but no fewer and no more than these. They are whole steps of the machine, so
-/// there may be twice as many, and fewer if the machine takes fewer.
+/// A simulation takes so many steps in a unit of time that the regulator changes its torque by at
+/// most the part `CHANGE` in a step, but no fewer and no more than these. They are whole steps of
+/// the machine, so there may be twice as many, and fewer if the machine takes fewer.
 const FINE: [f64; 2] = [50.0, 1000.0];
 const CHANGE: f64 = 0.1;
 /// Where these are longer than the machine's, it begins so much farther from upright, because the
