@@ -1,41 +1,22 @@
-//! Control: linear models, inverse dynamics, linear-quadratic regulators, and plans that swing up.
+//! Control: a walk from a model to a machine that stands up, a room for each step.
 //!
-//! A result is finite, or a [`ControlError`] that names what overflows with extreme parameters. The
-//! [guide](crate::guide::control) has a regulator on a machine, and the costs of a plan.
+//! 1. [`model`] linearizes a [`Pendulum`](crate::physics::Pendulum), in continuous time or for one
+//!    step, and has its inverse dynamics.
+//! 2. [`regulator`] holds an equilibrium: linear-quadratic regulators, along a trajectory, too, and
+//!    with a bounded torque, which holds from a region of attraction.
+//! 3. [`plan`] finds a motion to an equilibrium, such as a swing-up, and the feedback along it.
+//! 4. [`estimate`] finds the state of a machine from its angles alone, and its parameters.
+//! 5. [`identify`] finds the parameters from recordings.
+//! 6. [`mpc`] puts these together: from encoder counts to torques, on a microcontroller.
+//!
+//! A room uses only those before it. A result is finite, or an [`Error`](crate::Error) that names
+//! what overflows with extreme parameters. The [guide](crate::guide::control) has a regulator on a
+//! machine, and the costs of a plan.
 
-mod cost;
-mod deviation;
-mod double;
-mod error;
-mod estimator;
-mod evidence;
-mod identify;
-mod inverse_dynamics;
-mod linearize;
-mod linearize_step;
-mod lqr;
-mod matrix;
-mod noise;
-mod passes;
-mod plan;
-mod planner;
-mod recovery;
-mod region;
-mod regulator;
-mod tries;
+pub mod estimate;
+pub mod identify;
+pub mod model;
+pub mod mpc;
+pub mod plan;
+pub mod regulator;
 mod units;
-
-pub use cost::Cost;
-pub use deviation::difference;
-pub use error::ControlError;
-pub use estimator::Estimator;
-pub use evidence::{Evidence, Identified, Sample};
-pub use identify::{identify, prediction_error};
-pub use inverse_dynamics::{Forces, inverse_dynamics, velocities};
-pub use linearize::{LinearModel, linearize};
-pub use linearize_step::linearize_step;
-pub use lqr::{Lqr, lqr};
-pub use noise::Noise;
-pub use plan::{Knot, NoPlan};
-pub use planner::Planner;
-pub use regulator::regulator;

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// Why an input was rejected. `Display` names the value, its unit and the rule: "dt must be finite
-/// and above 0 s, got 0".
+/// Why an input was rejected, or why there is no result. `Display` names the value, its unit and the
+/// rule: "dt must be finite and above 0 s, got 0".
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -23,10 +23,12 @@ pub enum Error {
     SharedParams,
     /// A batch has no acrobots.
     EmptyBatch,
-    /// A batch does not fit into memory.
+    /// A batch or a plan does not fit into memory.
     #[cfg(feature = "alloc")]
     OutOfMemory {
-        /// The number of acrobots.
+        /// What it has: `"acrobots"` or `"knots"`.
+        of: &'static str,
+        /// Their number.
         len: usize,
     },
     /// A slice does not have the length that a batch needs.
@@ -47,6 +49,53 @@ pub enum Error {
     },
     /// An action number other than 0, 1 and 2.
     UnknownAction(u8),
+    /// An element of a matrix or a vector is infinite or NaN.
+    NotFinite {
+        /// The argument or the result.
+        name: &'static str,
+        /// The first element that is not finite, in SI units.
+        value: f64,
+    },
+    /// A matrix of weights is not symmetric. Differences of up to 16 machine epsilons of its
+    /// largest element do not count.
+    NotSymmetric {
+        /// The argument.
+        name: &'static str,
+        /// An element above the diagonal.
+        upper: f64,
+        /// Its mirror image below the diagonal.
+        lower: f64,
+    },
+    /// A matrix of weights is not positive semidefinite. Up to 16 machine epsilons of its largest
+    /// element count as 0.
+    NotSemidefinite {
+        /// The argument.
+        name: &'static str,
+        /// The largest absolute value after the elimination of all positive pivots.
+        value: f64,
+    },
+    /// The state of a regulator is not an equilibrium under the torque.
+    NotInEquilibrium {
+        /// The first velocity that is not 0, rad/s, or acceleration above the largest.
+        rate: f64,
+        /// The largest acceleration of this machine, rad/s².
+        largest: f64,
+    },
+    /// The torque does not reach a motion that grows or persists, so no regulator makes it vanish.
+    NotStabilizable,
+    /// The weights do not see a motion that persists: one that needs more than 2⁴⁰ steps to vanish.
+    NotDetectable,
+    /// The error of a gain can be above 1e-9 of its largest element, or deviations do not vanish
+    /// with the gain that the scalar rounds.
+    IllConditioned {
+        /// The estimated error of the gain, relative to its largest element.
+        error: f64,
+    },
+    /// No plan ends in a state from which the regulator holds.
+    NoPlan {
+        /// The number of tries.
+        tries: u32,
+    },
     /// A text that is not a seed.
     #[cfg(feature = "std")]
     MalformedSeed {
@@ -63,7 +112,11 @@ impl Error {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::OutOfRange { name, .. } | Self::WrongLength { name, .. } => name,
+            Self::OutOfRange { name, .. }
+            | Self::WrongLength { name, .. }
+            | Self::NotFinite { name, .. }
+            | Self::NotSymmetric { name, .. }
+            | Self::NotSemidefinite { name, .. } => name,
             Self::UnknownAction(_) => "action",
             _ => "",
         }
@@ -83,10 +136,22 @@ impl Error {
             Self::SharedParams => "a batch must have memory for the parameters of each acrobot",
             Self::EmptyBatch => "a batch must have at least 1 acrobot",
             #[cfg(feature = "alloc")]
-            Self::OutOfMemory { .. } => "a batch must fit into memory",
+            Self::OutOfMemory { .. } => "a batch and a plan must fit into memory",
             Self::WrongLength { .. } => "an argument has the wrong length",
             Self::NoSuchIndex { .. } => "a batch has no acrobot with this index",
             Self::UnknownAction(_) => "an action must be 0, 1 or 2",
+            Self::NotFinite { .. } => "each element must be finite",
+            Self::NotSymmetric { .. } => "weights must be symmetric",
+            Self::NotSemidefinite { .. } => "weights must be positive semidefinite",
+            Self::NotInEquilibrium { .. } => "the state must be in equilibrium",
+            Self::NotStabilizable => {
+                "the torque must reach each motion that grows or persists, but does not reach one"
+            }
+            Self::NotDetectable => {
+                "q must weight each motion that persists, but does not weight one"
+            }
+            Self::IllConditioned { .. } => "the relative error of the gain must be at most 1e-9",
+            Self::NoPlan { .. } => "no plan ends upright",
             #[cfg(feature = "std")]
             Self::MalformedSeed { .. } => "a seed must be a number of 1 to 4300 decimal digits",
         }
@@ -106,10 +171,14 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
             Error::WrongLength { len, expected, .. } => {
                 write!(f, "{name} must have {expected} elements, got {len}")
             }
-            Error::SharedParams => f.write_str(error.message()),
+            Error::SharedParams | Error::NotStabilizable | Error::NotDetectable => {
+                f.write_str(error.message())
+            }
             Error::EmptyBatch => write!(f, "{}, got 0 generators", error.message()),
             #[cfg(feature = "alloc")]
-            Error::OutOfMemory { len } => write!(f, "{}, got {len} acrobots", error.message()),
+            Error::OutOfMemory { of, len } => {
+                write!(f, "all {of} must fit into memory, got {len}")
+            }
             Error::NoSuchIndex { index, len } => {
                 write!(f, "member index must be below {len}, got {index}")
             }
@@ -117,6 +186,25 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
                 f,
                 "{name} must be 0 (negative torque), 1 (none) or 2 (positive), got {number}"
             ),
+            Error::NotFinite { value, .. } => {
+                write!(f, "{name} must be finite in each element, got {value}")
+            }
+            Error::NotSymmetric { upper, lower, .. } => write!(
+                f,
+                "{name} must be symmetric, got {upper} and {lower} on both sides of the diagonal"
+            ),
+            Error::NotSemidefinite { value, .. } => write!(
+                f,
+                "{name} must be positive semidefinite, got elements of up to {value} in size after \
+                the elimination of its positive pivots"
+            ),
+            Error::NotInEquilibrium { rate, largest } => write!(
+                f,
+                "the state must be in equilibrium, with velocities of 0 and accelerations of at \
+                most {largest:.1e} rad/s², got {rate}"
+            ),
+            Error::IllConditioned { error: size } => write!(f, "{}, got {size:e}", error.message()),
+            Error::NoPlan { tries } => write!(f, "{} in {tries} tries", error.message()),
             #[cfg(feature = "std")]
             Error::MalformedSeed { found, position } => {
                 f.write_str("seed must be a number of 1 to 4300 decimal digits, got ")?;

@@ -1,6 +1,7 @@
-//! Numbers without physics: the scalars, numbers side by side, and sines.
+//! Numbers without physics: the scalars, numbers side by side, matrices, and sines.
 
 mod lanes;
+pub mod matrix;
 mod real;
 mod simd;
 pub mod sines;

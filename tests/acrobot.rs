@@ -3,7 +3,7 @@
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Micro, Reference};
 use acrobot::batch::{Block, LaneParams};
-use acrobot::control::ControlError;
+
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::task::{Draws, GymnasiumV0, ResetBounds, Task};
@@ -38,7 +38,7 @@ const _: () = {
     is_send_sync_clone::<Trajectory<f32, 10>>();
     is_send_sync_clone::<Pcg64>();
     is_send_sync_clone::<Error>();
-    is_send_sync_clone::<ControlError>();
+    is_send_sync_clone::<Error>();
 };
 
 /// An arithmetic with only the required items. Its cosines put the tip at exactly the target

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real, Reference};
-use acrobot::control::{LinearModel, inverse_dynamics, linearize};
+use acrobot::control::model::LinearModel;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Joints, Pendulum, wrap};
 use acrobot::task::{Draw, Draws};
@@ -160,7 +160,7 @@ fn rate(params: Params) -> f64 {
     let ends = [0.0, PI].map(|theta2| {
         let state = State { theta2, ..State::HANGING };
         let pendulum = Pendulum::<Damped<Portable>>::new(params, state).unwrap();
-        let LinearModel { a, .. } = linearize(&pendulum, 0.0).unwrap();
+        let LinearModel { a, .. } = pendulum.linearize(0.0).unwrap();
         -a[2][2] - a[3][3]
     });
     ends[0].max(ends[1])
@@ -268,7 +268,7 @@ fn coulomb_friction_is_near_realaigyms() {
         let dtheta2 = f64::from(i) * 1e-4;
         let state = State { dtheta2, ..State::HANGING };
         let pendulum = Pendulum::<Damped<Portable>>::new(params, state).unwrap();
-        let [_, torque] = inverse_dynamics(&pendulum, [0.0; 2]).unwrap().torques;
+        let [_, torque] = pendulum.inverse_dynamics([0.0; 2]).unwrap().torques;
         let difference = (torque - f64::atan(100.0 * dtheta2) / (PI / 2.0)).abs();
         most = most.max(difference);
         if dtheta2 >= 0.1 {

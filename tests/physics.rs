@@ -2,7 +2,7 @@
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
 use acrobot::batch::VecBatch;
-use acrobot::control::inverse_dynamics;
+
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::{Dynamics, Joints, Pendulum};
 use acrobot::task::{Draw, Draws};
@@ -62,7 +62,7 @@ const ROUNDING: f64 = 1e-11;
 fn the_equations_are_the_inverse_of_newton_and_eulers() {
     fn check<A: Arithmetic<Scalar = f64>>(params: Params, state: State, torque: f64) {
         let pendulum = Pendulum::<A>::new(params, state).unwrap();
-        let torques = |accelerations| inverse_dynamics(&pendulum, accelerations).unwrap().torques;
+        let torques = |accelerations| pendulum.inverse_dynamics(accelerations).unwrap().torques;
         let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(torque);
         let [joint, motor] = torques([ddtheta1, ddtheta2]);
         let scale = torques([0.0; 2]).into_iter().fold(1.0, |scale: f64, x| scale.max(x.abs()));
@@ -93,7 +93,7 @@ fn positions_and_energies_follow_from_states_and_torques() {
         let moving = Pendulum::<Portable>::new(params, state).unwrap();
         let at_rest = State { dtheta1: 0.0, dtheta2: 0.0, ..state };
         let resting = Pendulum::<Portable>::new(params, at_rest).unwrap();
-        let torques = |accelerations| inverse_dynamics(&resting, accelerations).unwrap().torques;
+        let torques = |accelerations| resting.inverse_dynamics(accelerations).unwrap().torques;
         let [weight1, weight2] = torques([0.0; 2]);
         let rows = moving.mass_matrix();
         for (i, accelerations) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {

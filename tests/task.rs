@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::batch::VecBatch;
-use acrobot::control::{difference, regulator};
+
 use acrobot::env::Env;
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Pendulum, saturate};
@@ -108,14 +108,14 @@ fn a_regulator_stays_upright_from_100_initial_states() {
     let params = Balance::PARAMS.cast();
     let upright = Pendulum::<Fast>::new(params, State::UPRIGHT).unwrap();
     let weights = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| f32::from(u8::from(i == j))));
-    let lqr = regulator(&upright, 0.0, &weights, 1.0).unwrap();
+    let lqr = upright.regulator(0.0, &weights, 1.0).unwrap();
     for seed in 0..100 {
         let mut acrobot = Acrobot::<Fast, Balance>::new(seed);
         for _ in 0..500 {
-            let torque = lqr.torque(difference(acrobot.state(), State::UPRIGHT));
+            let torque = lqr.torque(acrobot.state().deviation_from(State::UPRIGHT));
             acrobot.step_torque(saturate(torque, 10.0)).unwrap();
         }
-        let x = difference(acrobot.state(), State::UPRIGHT);
+        let x = acrobot.state().deviation_from(State::UPRIGHT);
         assert!(x.iter().all(|x| x.abs() < 1e-3), "{seed}: {x:?}");
     }
 }

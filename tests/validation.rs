@@ -48,7 +48,7 @@ fn errors_name_the_value_and_the_rule() {
     messages.push(Error::NoSuchIndex { index: 3, len: 3 }.message());
     messages.push(Error::UnknownAction(3).message());
     messages.push(Error::SharedParams.message());
-    messages.push(Error::OutOfMemory { len: 3 }.message());
+    messages.push(Error::OutOfMemory { of: "acrobots", len: 3 }.message());
     messages.dedup();
     // The texts without numbers, in the same order.
     assert_eq!(
@@ -61,7 +61,7 @@ fn errors_name_the_value_and_the_rule() {
             "a batch has no acrobot with this index",
             "an action must be 0, 1 or 2",
             "a batch must have memory for the parameters of each acrobot",
-            "a batch must fit into memory",
+            "a batch and a plan must fit into memory",
         ]
     );
 }

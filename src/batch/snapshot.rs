@@ -112,7 +112,7 @@ impl<'de, A: Arithmetic, T: Task, const N: usize> serde::Deserialize<'de> for Ve
         let settings = read(deserializer, |member| {
             let len = members.len() + 1;
             let reserved = members.try_reserve(1);
-            reserved.map_err(|_| Error::OutOfMemory { len })?;
+            reserved.map_err(|_| Error::OutOfMemory { of: "acrobots", len })?;
             members.push(member);
             Ok(())
         })?;

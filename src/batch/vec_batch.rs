@@ -155,7 +155,7 @@ impl<A: Arithmetic, T: Task, const N: usize> DerefMut for VecBatch<A, T, N> {
 fn fill<T: Clone>(value: T, count: usize, len: usize) -> Result<Vec<T>, Error> {
     let mut vec = Vec::new();
     let reserved = vec.try_reserve_exact(count);
-    reserved.map_err(|_| Error::OutOfMemory { len })?;
+    reserved.map_err(|_| Error::OutOfMemory { of: "acrobots", len })?;
     vec.resize(count, value);
     Ok(vec)
 }

@@ -7,18 +7,18 @@ use crate::physics::Params;
 /// scale of a metre, a kilogram or a second. They are roots and products, so powers of 4 and 2 in
 /// lengths and masses change no digit.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Units {
+pub(in crate::control) struct Units {
     /// T = √(I / F), s, where I is the inertia of the straight machine about the fixed joint.
-    pub(super) time: f64,
+    pub(in crate::control) time: f64,
     /// The largest torque of the motor, N m.
-    pub(super) torque: f64,
+    pub(in crate::control) torque: f64,
     /// F, N m: the torque of gravity on the straight machine when it is level, plus the motor's. So
     /// a machine without gravity has units, too.
-    pub(super) force: f64,
+    pub(in crate::control) force: f64,
 }
 
 impl Units {
-    pub(super) fn new<S: Real>(params: &Params<S>, limit: S) -> Self {
+    pub(in crate::control) fn new<S: Real>(params: &Params<S>, limit: S) -> Self {
         let params: Params<f64> = params.cast();
         let [upper, link2, coupling] = params.inertias();
         let Params { mass1, mass2, center_of_mass1, center_of_mass2, length1, .. } = params;

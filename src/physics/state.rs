@@ -1,5 +1,6 @@
 //! The state.
 
+use super::bounds::wrap;
 use crate::error::{Error, Range};
 use crate::math::Real;
 
@@ -50,6 +51,28 @@ impl<S: Real> State<S> {
     #[inline]
     pub fn cast<T: Real>(self) -> State<T> {
         <[S; 4]>::from(self).map(|x| T::from_f64(x.to_f64())).into()
+    }
+
+    /// The deviation from another state, rad and rad/s. Differences of angles are wrapped to
+    /// \[−π, π\], so it is continuous upright, where θ1 jumps from π to −π.
+    ///
+    /// ```
+    /// use acrobot::State;
+    ///
+    /// let leaning = State { theta1: -3.0, ..State::UPRIGHT }; // beyond upright
+    /// let [theta1, ..] = leaning.deviation_from(State::UPRIGHT);
+    /// assert!((theta1 - 0.1416).abs() < 1e-4); // rad
+    /// ```
+    #[must_use]
+    pub fn deviation_from(self, target: Self) -> [S; 4] {
+        // Wrapped first, so that no difference overflows.
+        let between = |x, y| wrap(wrap(x) - wrap(y));
+        [
+            between(self.theta1, target.theta1),
+            between(self.theta2, target.theta2),
+            self.dtheta1 - target.dtheta1,
+            self.dtheta2 - target.dtheta2,
+        ]
     }
 
     /// Checks that all four numbers are finite.

@@ -24,7 +24,7 @@ fn replaced_batches_of_other_lengths_have_their_own_results() {
 fn a_batch_that_does_not_fit_into_memory_is_rejected() {
     let len = usize::MAX / 2;
     let error = VecBatch::<Fast>::new(SeedSequence::new(0), len).unwrap_err().to_string();
-    assert_eq!(error, format!("a batch must fit into memory, got {len} acrobots"));
+    assert_eq!(error, format!("all acrobots must fit into memory, got {len}"));
 }
 
 /// The packages for C, Python and JavaScript compare with the same file.

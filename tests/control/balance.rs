@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::control::{self, ControlError, Lqr, difference, inverse_dynamics};
+use acrobot::control::regulator::Lqr;
 use acrobot::physics::{Pendulum, saturate};
-use acrobot::{Fast, Params, Portable, State};
+use acrobot::{Error, Fast, Params, Portable, State};
 use common::{assert_says, in_every_arithmetic};
 
 use crate::cast;
@@ -18,10 +18,10 @@ fn regulated<A: Arithmetic>(
     target: State,
     torque: f64,
     weight: f64,
-) -> (Pendulum<A>, Result<Lqr<A::Scalar>, ControlError>) {
+) -> (Pendulum<A>, Result<Lqr<A::Scalar>, Error>) {
     let pendulum = Pendulum::new(params.cast(), target.cast()).unwrap();
     let q = diagonal([weight; 4]).map(cast);
-    let regulator = control::regulator(&pendulum, Real::from_f64(torque), &q, Real::from_f64(1.0));
+    let regulator = pendulum.regulator(Real::from_f64(torque), &q, Real::from_f64(1.0));
     (pendulum, regulator)
 }
 
@@ -40,10 +40,10 @@ fn largest_lean(params: Params, limit: f64, weight: f64) -> usize {
         state.theta1 -= f64::from(lean) / 1000.0;
         pendulum.set_state(state).unwrap();
         for _ in 0..2000 {
-            let torque = regulator.torque(difference(pendulum.state(), State::UPRIGHT));
+            let torque = regulator.torque(pendulum.state().deviation_from(State::UPRIGHT));
             pendulum.step(saturate(torque, limit)).unwrap();
         }
-        let left = difference(pendulum.state(), State::UPRIGHT);
+        let left = pendulum.state().deviation_from(State::UPRIGHT);
         left.iter().all(|x| x.abs() < 1e-3)
     };
     (1..1000).take_while(holds).count()
@@ -72,7 +72,7 @@ fn deviation_held<A: Arithmetic>(params: Params, target: State) -> f64 {
     pendulum.set_state(state).unwrap();
     let (steps, mut most) = ((10.0 / params.dt) as u32, 0.0_f64);
     for step in 0..steps {
-        let x = difference(pendulum.state(), target);
+        let x = pendulum.state().deviation_from(target);
         pendulum.step(regulator.torque(x)).unwrap();
         if step >= steps / 10 * 9 {
             most = most.max(x[0].to_f64().abs()).max(x[1].to_f64().abs());
@@ -113,16 +113,16 @@ fn an_equilibrium_is_as_near_for_machines_of_any_size() {
         let lean = |lean, gravity| {
             let state = State { theta1: PI + lean, ..State::HANGING };
             let pendulum = Pendulum::<Portable>::new(Params { gravity, ..params }, state).unwrap();
-            control::regulator(&pendulum, 0.0, &diagonal([1.0; 4]), 1.0).map(drop)
+            pendulum.regulator(0.0, &diagonal([1.0; 4]), 1.0).map(drop)
         };
         assert_eq!(lean(1.5e-3, 9.8), Ok(()));
         let error = lean(3e-3, 9.8).unwrap_err();
-        let ControlError::NotInEquilibrium { rate, largest } = error else { panic!("{error}") };
+        let Error::NotInEquilibrium { rate, largest } = error else { panic!("{error}") };
         assert!(
             rate.abs() > largest && (largest * length * 4.5 / 19.6 / 2.5e-3 - 1.0).abs() < 1e-12
         );
         // At rest without gravity, but no motor holds it.
-        assert_eq!(lean(1.0, 0.0), Err(ControlError::NotStabilizable));
+        assert_eq!(lean(1.0, 0.0), Err(Error::NotStabilizable));
     }
 }
 
@@ -138,7 +138,7 @@ fn a_regulator_needs_an_equilibrium() {
         let theta1 = PI - f64::asin(1.0 / 3.0);
         let bent = State::from([theta1, -PI / 2.0 - theta1, 0.0, 0.0]);
         let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, bent).unwrap();
-        let [_, torque] = inverse_dynamics(&pendulum, [0.0; 2]).unwrap().torques;
+        let [_, torque] = pendulum.inverse_dynamics([0.0; 2]).unwrap().torques;
         assert!(torque.abs() > 2.0);
         for (state, torque, most) in [
             (State::HANGING, 0.0, "1.1e-2"),

@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
-use acrobot::control::{Estimator, Noise, difference};
+use acrobot::control::estimate::{
+    Estimator, KalmanFilter, Noise, ParameterEstimator, ParameterStd,
+};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Joints, Pendulum};
 use acrobot::{Fast, Params, Portable, State};
@@ -31,7 +33,7 @@ pub fn real() -> Params {
 const COUNTS: f64 = 4096.0;
 
 fn noise<S: Real>() -> Noise<S> {
-    Noise { angle: S::from_f64(1.8 / COUNTS), torque: S::from_f64(0.05) }
+    Noise { angle_std: S::from_f64(1.8 / COUNTS), torque_std: S::from_f64(0.05) }
 }
 
 /// A simulated machine with encoders, whose motor errs.
@@ -60,19 +62,19 @@ impl Machine {
 /// Follows a machine for ten seconds, under random torques of up to 3 N m, each for a quarter of a
 /// second. Calls `check` after each measurement.
 fn follow<A: Arithmetic, const K: usize>(
-    estimator: &mut Estimator<A, K>,
+    estimator: &mut KalmanFilter<A, K>,
     mut machine: Machine,
     rng: &mut Pcg64,
-    mut check: impl FnMut(u32, &Estimator<A, K>, State),
+    mut check: impl FnMut(u32, &KalmanFilter<A, K>, State),
 ) {
     let mut torque = 0.0;
     for tick in 0..5000_u32 {
         if tick.is_multiple_of(125) {
             torque = uniform(rng, -3.0, 3.0);
         }
-        estimator.measure(machine.angles().map(A::Scalar::from_f64)).unwrap();
+        estimator.correct(machine.angles().map(A::Scalar::from_f64)).unwrap();
         check(tick, estimator, machine.pendulum.state());
-        estimator.step(A::Scalar::from_f64(torque)).unwrap();
+        estimator.predict(A::Scalar::from_f64(torque)).unwrap();
         machine.step(torque);
     }
 }
@@ -85,8 +87,8 @@ fn errors<A: Arithmetic>() -> (f64, f64) {
     let machine = Machine::new(real(), 1);
     follow(&mut estimator, machine, &mut Pcg64::new(2), |tick, estimator, truth| {
         if tick > 100 {
-            let errors = difference(estimator.state().cast::<f64>(), truth);
-            for (error, deviation) in errors.iter().zip(estimator.deviations().unwrap()).skip(2) {
+            let errors = estimator.state().cast::<f64>().deviation_from(truth);
+            for (error, deviation) in errors.iter().zip(estimator.state_std().unwrap()).skip(2) {
                 squares += error * error;
                 within += f64::from(u8::from(error.abs() < 2.0 * deviation.to_f64()));
                 count += 1.0;
@@ -115,12 +117,12 @@ fn a_push_is_noticed_within_a_fiftieth_of_a_second() {
                 State { dtheta1: state.dtheta1 + 3.0, dtheta2: state.dtheta2 - 5.0, ..state };
             machine.pendulum.set_state(pushed).unwrap();
         }
-        estimator.measure(machine.angles()).unwrap();
+        estimator.correct(machine.angles()).unwrap();
         if tick == 510 || tick == 499 {
-            let [_, _, error1, error2] = difference(estimator.state(), machine.pendulum.state());
+            let [_, _, error1, error2] = estimator.state().deviation_from(machine.pendulum.state());
             assert!(error1.abs().max(error2.abs()) < 0.3, "{tick}: {error1} {error2} rad/s");
         }
-        estimator.step(0.0).unwrap();
+        estimator.predict(0.0).unwrap();
         machine.step(0.0);
     }
 }
@@ -151,20 +153,20 @@ fn ten_seconds_of_motion_tell_the_parameters() {
                 coulomb: Joints { joint1: wrong(0.16), joint2: wrong(0.12) },
                 ..truth
             };
-            let deviations = Params {
-                mass1: 0.05,
-                mass2: 0.05,
-                length1: 0.0,
-                inertia1: 0.002,
-                inertia2: 0.002,
-                rotor: 0.003,
-                friction: Joints { joint1: 0.01, joint2: 0.01 },
-                coulomb: Joints { joint1: 0.02, joint2: 0.02 },
-                ..Params::DEFAULT
+            let number = A::Scalar::from_f64;
+            let std = ParameterStd {
+                mass1: number(0.05),
+                mass2: number(0.05),
+                length1: number(0.0),
+                inertia1: number(0.002),
+                inertia2: number(0.002),
+                rotor: number(0.003),
+                friction1: number(0.01),
+                friction2: number(0.01),
+                coulomb1: number(0.02),
+                coulomb2: number(0.02),
             };
-            let (given, deviations) = (given.cast(), deviations.cast());
-            let mut estimator =
-                Estimator::<A, 10>::with_params(given, deviations, noise()).unwrap();
+            let mut estimator = ParameterEstimator::<A>::new(given.cast(), std, noise()).unwrap();
             follow(&mut estimator, Machine::new(truth, seed), &mut rng, |_, _, _| {});
             let found = estimator.params().cast::<f64>();
             for (found, truth) in base(&found).into_iter().zip(base(&truth)) {
@@ -221,17 +223,17 @@ fn lives_on<A: Arithmetic>() {
         let angle = decades(&mut rng, -5.0, -2.5);
         let torque = limit * decades(&mut rng, -4.0, -1.0);
         let [of_angle, of_torque] = [angle, torque].map(A::Scalar::from_f64);
-        let noise = Noise { angle: of_angle, torque: of_torque };
+        let noise = Noise { angle_std: of_angle, torque_std: of_torque };
         let mut estimator = Estimator::<A>::new(params.cast(), noise).unwrap();
         for _ in 0..i % 20 {
             let size = decades(&mut rng, -3.0, if i % 2 == 0 { 1.0 } else { 25.0 });
             let mut any = || A::Scalar::from_f64(uniform(&mut rng, -size, size));
             let (angles, torque) = ([any(), any()], any());
-            estimator.measure(angles).unwrap();
+            estimator.correct(angles).unwrap();
             if size < 1.0 {
-                estimator.measure(angles).unwrap();
+                estimator.correct(angles).unwrap();
             }
-            let _ = estimator.step(torque);
+            let _ = estimator.predict(torque);
         }
         let mut machine = Machine::new(params, i);
         let mut worst = 0.0_f64;
@@ -240,13 +242,13 @@ fn lives_on<A: Arithmetic>() {
         for tick in 0..1000 {
             let State { theta1, theta2, .. } = machine.pendulum.state();
             let angles = [theta1, theta2].map(|x| x + angle * uniform(&mut rng, -1.7, 1.7));
-            estimator.measure(angles.map(A::Scalar::from_f64)).unwrap();
+            estimator.correct(angles.map(A::Scalar::from_f64)).unwrap();
             if tick > 800 {
                 let [error1, error2, ..] =
-                    difference(estimator.state().cast(), machine.pendulum.state());
+                    estimator.state().cast().deviation_from(machine.pendulum.state());
                 worst = worst.max(error1.abs()).max(error2.abs());
             }
-            let step = estimator.step(A::Scalar::ZERO);
+            let step = estimator.predict(A::Scalar::ZERO);
             assert!(tick < 100 || step.is_ok(), "{i}: {step:?}");
             machine.pendulum.step(0.0).unwrap();
         }
@@ -263,36 +265,35 @@ fn an_estimator_lives_on_after_any_measurements_and_torques() {
 /// The law of scale, bit for bit: lengths × 1/4 and 16, masses × 1/2 and 8.
 #[test]
 fn a_machine_of_another_size_is_estimated_alike() {
-    let deviations = Params {
-        mass1: 0.05,
-        mass2: 0.05,
-        length1: 0.01,
-        inertia1: 0.002,
-        inertia2: 0.002,
-        rotor: 0.003,
-        friction: Joints { joint1: 0.01, joint2: 0.01 },
-        ..real()
-    };
     // The width of Coulomb friction has a unit.
     let given = Params { coulomb: Joints::default(), ..real() };
-    let deviations = Params { coulomb: Joints::default(), ..deviations };
     let found = |a: f64, b: f64| {
         let time = a.sqrt();
-        let noise = Noise { angle: 4e-4, torque: 0.05 * a * b };
-        let [machine, deviations] = [&given, &deviations].map(|x| scaled(x, a, b, time));
+        let noise = Noise { angle_std: 4e-4, torque_std: 0.05 * a * b };
+        let (machine, inertia) = (scaled(&given, a, b, time), a * a * b);
+        let std = ParameterStd {
+            mass1: 0.05 * b,
+            mass2: 0.05 * b,
+            length1: 0.01 * a,
+            inertia1: 0.002 * inertia,
+            inertia2: 0.002 * inertia,
+            rotor: 0.003 * inertia,
+            friction1: 0.01 * (a * b * time),
+            friction2: 0.01 * (a * b * time),
+            ..ParameterStd::default()
+        };
         let wrong = Params { mass2: 1.1 * machine.mass2, ..machine };
-        let mut estimator =
-            Estimator::<Damped<Portable>, 10>::with_params(wrong, deviations, noise).unwrap();
+        let mut estimator = ParameterEstimator::<Damped<Portable>>::new(wrong, std, noise).unwrap();
         let mut machine = Machine::new(machine, 1);
         for tick in 0..500 {
             let torque = if tick / 100 % 2 == 0 { 2.0 } else { -1.0 } * a * b;
-            estimator.measure(machine.angles()).unwrap();
-            estimator.step(torque).unwrap();
+            estimator.correct(machine.angles()).unwrap();
+            estimator.predict(torque).unwrap();
             machine.pendulum.step(torque).unwrap();
         }
         let State { theta1, theta2, dtheta1, dtheta2 } = estimator.state();
         let units = [1.0, 1.0, time.recip(), time.recip()];
-        let deviations = estimator.deviations().unwrap().into_iter().zip(units);
+        let deviations = estimator.state_std().unwrap().into_iter().zip(units);
         let state = [theta1, theta2, dtheta1 * time, dtheta2 * time];
         (
             state,
@@ -309,43 +310,45 @@ fn a_machine_of_another_size_is_estimated_alike() {
 #[test]
 fn bad_noise_and_angles_are_rejected() {
     let error = |noise| Estimator::<Fast>::new(Params::DEFAULT, noise).unwrap_err().to_string();
-    let angle = error(Noise { angle: 0.0, torque: 1.0 });
-    assert_eq!(angle, "angle must be above 0 and at most 2 rad, got 0");
-    let torque = error(Noise { angle: 1e-3, torque: f32::NAN });
-    assert_eq!(torque, "torque must be finite and above 0 N m, got NaN");
-    let torque = error(Noise { angle: 1e-3, torque: 1e7 });
+    let angle = error(Noise { angle_std: 0.0, torque_std: 1.0 });
+    assert_eq!(angle, "angle_std must be above 0 and at most 2 rad, got 0");
+    let torque = error(Noise { angle_std: 1e-3, torque_std: f32::NAN });
+    assert_eq!(torque, "torque_std must be finite and above 0 N m, got NaN");
+    let torque = error(Noise { angle_std: 1e-3, torque_std: 1e7 });
     let rule =
-        "torque must be so small that a step changes dtheta2 by at most 1 / dt, in N m, got ";
+        "torque_std must be so small that a step changes dtheta2 by at most 1 / dt, in N m, got ";
     assert_eq!(torque, format!("{rule}10000000"));
     // A circle tells no more than 2 rad. With the default parameters 14.2 N m are 25 rad/s², and a
     // step has 0.2 s.
-    assert!(error(Noise { angle: 2.5, torque: 1.0 }).ends_with("at most 2 rad, got 2.5"));
-    let of = |angle, torque| Estimator::<Fast>::new(Params::DEFAULT, Noise { angle, torque });
+    assert!(error(Noise { angle_std: 2.5, torque_std: 1.0 }).ends_with("at most 2 rad, got 2.5"));
+    let of = |angle_std, torque_std| {
+        Estimator::<Fast>::new(Params::DEFAULT, Noise { angle_std, torque_std })
+    };
     assert!(of(2.0, 14.2).is_ok() && of(2.0, 14.3).is_err() && of(1e-30, 1e-30).is_ok());
 
-    let noise = Noise { angle: 1e-3, torque: 0.1 };
+    let noise = Noise { angle_std: 1e-3, torque_std: 0.1 };
     let mut estimator = Estimator::<Fast>::new(Params::DEFAULT, noise).unwrap();
-    let error = estimator.measure([f32::NAN, 0.0]).unwrap_err().to_string();
+    let error = estimator.correct([f32::NAN, 0.0]).unwrap_err().to_string();
     assert_eq!(error, "theta1 must be a finite number of rad, got NaN");
-    assert!(estimator.step(f32::INFINITY).is_err());
+    assert!(estimator.predict(f32::INFINITY).is_err());
 }
 
 /// An overflow is an error, and the next measurement begins again.
 #[test]
 fn an_estimate_that_overflows_is_an_error() {
-    let noise = Noise { angle: 1e-3, torque: 0.1 };
-    let params = Params { mass2: 1e30, ..Params::DEFAULT };
-    let mut estimator = Estimator::<Fast, 10>::with_params(Params::DEFAULT, params, noise).unwrap();
-    estimator.measure([0.1, 0.2]).unwrap();
-    let error = estimator.step(0.0).unwrap_err().to_string();
+    let noise = Noise { angle_std: 1e-3, torque_std: 0.1 };
+    let std = ParameterStd { mass2: 1e30, length1: 1.0, ..ParameterStd::default() };
+    let mut estimator = ParameterEstimator::<Fast>::new(Params::DEFAULT, std, noise).unwrap();
+    estimator.correct([0.1, 0.2]).unwrap();
+    let error = estimator.predict(0.0).unwrap_err().to_string();
     assert_eq!(error, "covariances must be finite in each element, got inf");
-    assert_eq!(estimator.deviations(), None);
-    estimator.measure([0.3, 0.4]).unwrap();
+    assert_eq!(estimator.state_std(), None);
+    estimator.correct([0.3, 0.4]).unwrap();
     assert_eq!(estimator.state(), State::from([0.3, 0.4, 0.0, 0.0]));
 
     let mut estimator = Estimator::<Fast>::new(Params::DEFAULT, noise).unwrap();
-    estimator.measure([0.1, 0.2]).unwrap();
-    let error = estimator.step(1e6).unwrap_err().to_string();
+    estimator.correct([0.1, 0.2]).unwrap();
+    let error = estimator.predict(1e6).unwrap_err().to_string();
     assert!(error.starts_with("dtheta2 must be at most half a turn in a step, in rad/s, got "));
-    assert_eq!(estimator.deviations(), None);
+    assert_eq!(estimator.state_std(), None);
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::{env, fs};
 
 use acrobot::arithmetic::Arithmetic as _;
-use acrobot::control::{Evidence, Identified, Sample, identify, prediction_error};
+use acrobot::control::identify::{Fit, Regression, Sample, identify, prediction_error};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Joints;
 use acrobot::{Params, Portable};
@@ -61,7 +61,7 @@ fn ten_seconds_tell_the_inertias() {
     for seed in 0..machines {
         let truth = machine(&mut rng);
         let (params, found) = identify(&[&record(truth, &mut rng, seed)], truth).unwrap();
-        assert_eq!(found.undetermined, 0);
+        assert_eq!(found.rank_deficiency, 0);
         let largest = |found: &[f64], truth: &[f64]| -> f64 {
             let errors = found.iter().zip(truth).map(|(x, y)| (x / y - 1.0).abs());
             errors.fold(0.0, f64::max)
@@ -81,7 +81,7 @@ fn ten_seconds_tell_the_inertias() {
 }
 
 /// The largest error of an inertia, relative to it.
-fn error(found: &Identified, truth: &Params) -> f64 {
+fn error(found: &Fit, truth: &Params) -> f64 {
     let errors = found.values.iter().zip(inertias(truth)).map(|(x, y)| (x / y - 1.0).abs());
     errors.fold(0.0, f64::max)
 }
@@ -155,15 +155,16 @@ fn what_a_recording_does_not_tell_is_counted() {
         ..Sample::default()
     };
     let samples: Vec<Sample> = (0..1000).map(swing).collect();
-    let mut evidence = Evidence::NONE;
-    evidence.add(&samples, 0.002, 9.81, 2, 250).unwrap();
-    let found = evidence.solve();
-    assert!(found.undetermined >= 4, "{found:?}");
-    let unknown = |i: usize| found.errors[i].is_infinite();
+    let mut regression = Regression::EMPTY;
+    regression.add(&samples, 0.002, 9.81, 2, 250).unwrap();
+    let found = regression.fit();
+    assert!(found.rank_deficiency >= 4, "{found:?}");
+    let unknown = |i: usize| found.std_errors[i].is_infinite();
     assert!([2, 5, 7, 9].into_iter().all(unknown) && ![3, 6, 8].into_iter().any(unknown));
-    let rule = "must be told by recordings in which both links move long enough, in kg m², got 0";
+    let rule =
+        "must be determined by recordings in which both links move long enough, in kg m², got 0";
     let error = found.params(Params::DEFAULT).unwrap_err().to_string();
-    assert!(error.starts_with("mass11 must be told by"), "{error}");
+    assert!(error.starts_with("mass11 must be determined by"), "{error}");
 
     // Nor does one of a machine at rest, hanging or leaning, or one that is too short.
     let still = [Sample::default(); 5000];
@@ -177,7 +178,7 @@ fn what_a_recording_does_not_tell_is_counted() {
 #[test]
 fn bad_recordings_are_rejected() {
     let add = |sample, dt, half| {
-        let result = Evidence::NONE.clone().add(&[sample; 9], dt, 9.81, half, 2);
+        let result = Regression::EMPTY.clone().add(&[sample; 9], dt, 9.81, half, 2);
         result.unwrap_err().to_string()
     };
     let still = Sample::default();

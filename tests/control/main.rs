@@ -1,17 +1,16 @@
-//! `control` is right: derivatives, forces, velocities and gains equal those of 200
+//! `control` is right: derivatives, forces and gains equal those of 200
 //! digits, recorded by `tests/data/control.py`.
 
 mod balance;
 mod estimator;
 mod identify;
+mod mpc;
 mod planner;
 mod recovery;
 mod regulators;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
-use acrobot::control::{
-    Forces, difference, inverse_dynamics, linearize, linearize_step, velocities,
-};
+use acrobot::control::model::Forces;
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, Portable, State};
 use common::{dynamics_of, lines, numbers, text_of};
@@ -42,13 +41,13 @@ const DECADES: usize = 40;
 const DAMPED: usize = 80;
 
 /// The largest error of each function over all cases, with the arithmetic `A`.
-fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
+fn errors<A: Arithmetic>(first: usize) -> [f64; 3] {
     let text = text_of("tests/data/control.txt");
     let recorded = |word| lines(&text, word).skip(first).take(40);
     assert_eq!(recorded("motion").count(), 40);
     let results = ["continuous", "discrete", "motion"].map(|word| recorded(word).map(numbers));
     let [continuous, discrete, motion] = results;
-    let mut worst = [0.0_f64; 4];
+    let mut worst = [0.0_f64; 3];
     let cases = recorded("case").zip(continuous).zip(discrete.zip(motion));
     for ((case, by_time), (by_step, motion)) in cases {
         let (dynamics, given) = case.split_once(' ').unwrap();
@@ -61,15 +60,14 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
         let state = State::from(vector(&x[15..19])).cast();
         let pendulum = Pendulum::<A>::new(params.cast(), state).unwrap();
         let torque = Real::from_f64(x[19]);
-        let continuous = linearize(&pendulum, torque).unwrap();
-        let discrete = linearize_step(&pendulum, torque).unwrap();
+        let continuous = pendulum.linearize(torque).unwrap();
+        let discrete = pendulum.linearize_step(torque).unwrap();
         let Forces { torques, reaction, elbow } =
-            inverse_dynamics(&pendulum, cast(vector::<2>(&x[20..]))).unwrap();
+            pendulum.inverse_dynamics(cast(vector::<2>(&x[20..]))).unwrap();
         let pairs = [
             ([continuous.a.as_flattened(), &continuous.b].concat(), &by_time[..]),
             ([discrete.a.as_flattened(), &discrete.b].concat(), &by_step),
-            ([torques, reaction, elbow].concat(), &motion[..6]),
-            (velocities(&pendulum).unwrap().concat(), &motion[6..]),
+            ([torques, reaction, elbow].concat(), &motion),
         ];
         for (worst, (found, expected)) in worst.iter_mut().zip(pairs) {
             *worst = worst.max(relative(&found, expected));
@@ -79,7 +77,7 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
 }
 
 #[test]
-fn derivatives_forces_and_velocities_equal_those_of_200_digits() {
+fn derivatives_and_forces_equal_those_of_200_digits() {
     for (worst, limit) in [
         (errors::<Reference>(MODERATE), 1e-14),
         (errors::<Portable>(MODERATE), 1e-14),
@@ -103,7 +101,7 @@ fn derivatives_forces_and_velocities_equal_those_of_200_digits() {
 #[test]
 fn differences_of_angles_are_wrapped_and_those_of_velocities_are_not() {
     let [state, target] = [[3.0, -1.0, 2.0, 5.0], [-3.0, 0.5, -1.0, 7.0]].map(State::from);
-    let [first, others @ ..] = difference(state, target);
+    let [first, others @ ..] = state.deviation_from(target);
     assert!((first - (6.0 - std::f64::consts::TAU)).abs() < 1e-15, "{first}");
     assert_eq!(others, [-1.5, 3.0, -2.0]);
 }
@@ -112,9 +110,9 @@ fn differences_of_angles_are_wrapped_and_those_of_velocities_are_not() {
 fn inputs_that_are_not_finite_are_rejected() {
     let pendulum = Pendulum::<Fast>::hanging();
     let torque = "torque must be a finite number of N m, got NaN";
-    assert_eq!(linearize(&pendulum, f32::NAN).unwrap_err().to_string(), torque);
-    assert_eq!(linearize_step(&pendulum, f32::NAN).unwrap_err().to_string(), torque);
-    let error = inverse_dynamics(&pendulum, [0.0, f32::INFINITY]).unwrap_err();
+    assert_eq!(pendulum.linearize(f32::NAN).unwrap_err().to_string(), torque);
+    assert_eq!(pendulum.linearize_step(f32::NAN).unwrap_err().to_string(), torque);
+    let error = pendulum.inverse_dynamics([0.0, f32::INFINITY]).unwrap_err();
     let rule = "ddtheta2 must be a finite number of rad/s², got inf";
     assert_eq!(error.to_string(), rule);
 }

@@ -6,7 +6,8 @@ use std::env;
 use std::f64::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
-use acrobot::control::{Knot, Planner, difference};
+use acrobot::control::plan::{Knot, Plan, Planner, Problem, SwingUp};
+use acrobot::control::regulator::BoundedRegulator;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Joints, Pendulum, saturate};
 use acrobot::{Fast, Params, Portable, State};
@@ -31,23 +32,23 @@ fn weight(params: &Params) -> f64 {
 /// Whether the machine that follows a plan is upright from 36 to 40 of its times after the plan:
 /// both links within 0.01 rad. Dry friction keeps a machine moving for ever, and so does `f32` at
 /// more than 100 steps in that time: then it holds if link 1 stays within 0.3 rad.
-pub fn holds<A: Arithmetic>(
-    planner: &Planner<A>,
+pub fn holds<A: Arithmetic, K: AsRef<[Knot<A::Scalar>]>>(
+    plan: &Plan<A::Scalar, K>,
     mut machine: Pendulum<A>,
-    plan: &[Knot<A::Scalar>],
     limit: A::Scalar,
 ) -> bool {
+    let steps = plan.knots.as_ref().len();
     let params: Params = machine.params().cast();
     let rate = time(&params, limit.to_f64()) / params.dt;
     let loses_bits = size_of::<A::Scalar>() == 4 && rate > 100.0;
     let is_rough = params.coulomb != Joints::default() || loses_bits;
-    let [first, last] = [36.0, 40.0].map(|times| plan.len() + (times * rate) as usize);
+    let [first, last] = [36.0, 40.0].map(|times| steps + (times * rate) as usize);
     (0..last).all(|i| {
-        machine.step(saturate(planner.follow(plan, i, machine.state()), limit)).unwrap();
-        let [x1, x2, ..] = difference(machine.state(), State::UPRIGHT).map(Real::to_f64);
+        machine.step(saturate(plan.torque(i, machine.state()), limit)).unwrap();
+        let [x1, x2, ..] = machine.state().deviation_from(State::UPRIGHT).map(Real::to_f64);
         // It falls for good beyond a level link.
         let most = if i > first { if is_rough { 0.3 } else { 0.01 } } else { PI / 2.0 };
-        i < plan.len() || x1.abs() < most && (i <= first || is_rough || x2.abs() < most)
+        i < steps || x1.abs() < most && (i <= first || is_rough || x2.abs() < most)
     })
 }
 
@@ -110,8 +111,8 @@ fn seeds(machines: u64) -> Vec<u64> {
 /// many of these fall, and how many others would be held.
 fn caught<A: Arithmetic>(params: &Params, limit: f64, states: u32, rng: &mut Pcg64) -> [u32; 3] {
     let (time, cast_params, [limit]) = (time(params, limit), params.cast(), cast([limit]));
-    let planner = match Planner::<A>::new(cast_params, limit) {
-        Ok(planner) => planner,
+    let regulator = match BoundedRegulator::<A>::new(cast_params, limit) {
+        Ok(regulator) => regulator,
         // `f32` cannot hold at each rate.
         Err(error) => {
             let is_too_short = error.to_string().starts_with("dt must be longer");
@@ -125,8 +126,9 @@ fn caught<A: Arithmetic>(params: &Params, limit: f64, states: u32, rng: &mut Pcg
         let x = [0.7, 1.4, 1.0 / time, 2.0 / time];
         let [x1, x2, x3, x4] = x.map(|most| size * uniform(rng, -most, most));
         let state = State::from(cast([PI + x1, x2, x3, x4]));
-        let held = || holds(&planner, Pendulum::new(cast_params, state).unwrap(), &[], limit);
-        match planner.catches(state) {
+        let plan = Plan { knots: [], after: *regulator.feedback() };
+        let held = || holds(&plan, Pendulum::<A>::new(cast_params, state).unwrap(), limit);
+        match regulator.holds_from(state) {
             true => {
                 counts[0] += 1;
                 counts[1] += u32::from(!held());
@@ -204,10 +206,12 @@ fn is_planned<A: Arithmetic>(seed: u64, friction: Friction, tries: u32) -> bool 
     let (params, limit, mut rng) = machine(seed, friction);
     let mut memory = vec![Knot::EMPTY; (20.0 * time(&params, limit) / params.dt) as usize];
     let (params, [limit]) = (params.cast(), cast([limit]));
-    let mut planner = Planner::<A>::new(params, limit).unwrap();
-    let Ok(plan) = planner.plan(State::HANGING, tries, &mut rng, &mut memory) else { return false };
-    let machine = Pendulum::new(params, State::HANGING).unwrap();
-    assert!(holds(&planner, machine, plan, limit), "machine {seed} {friction:?} falls");
+    let mut planner = Planner::<A>::new(&Problem::swing_up(params, limit).unwrap()).unwrap();
+    let Ok(plan) = planner.plan_into(State::HANGING, tries, &mut rng, &mut memory) else {
+        return false;
+    };
+    let machine = Pendulum::<A>::new(params, State::HANGING).unwrap();
+    assert!(holds(&plan, machine, limit), "machine {seed} {friction:?} falls");
     true
 }
 
@@ -238,14 +242,15 @@ fn plans_with_dry_friction_hold() {
     let (mut planned, infinite) = (0, f64::INFINITY);
     for (params, limit) in [(Params { dt: 0.01, ..real() }, 5.4), (gymnasium, 5.0)] {
         let params = Params { max_velocity1: infinite, max_velocity2: infinite, ..params };
-        let mut planner = Planner::<Damped<Portable>>::new(params, limit).unwrap();
+        let mut planner =
+            Planner::<Damped<Portable>>::new(&Problem::swing_up(params, limit).unwrap()).unwrap();
         for seed in 0..4 {
             let mut memory = [Knot::EMPTY; 400];
-            let plan = planner.plan(State::HANGING, 20, &mut Pcg64::new(seed), &mut memory);
+            let plan = planner.plan_into(State::HANGING, 20, &mut Pcg64::new(seed), &mut memory);
             if let Ok(plan) = plan {
                 planned += 1;
-                let machine = Pendulum::new(params, State::HANGING).unwrap();
-                assert!(holds(&planner, machine, plan, limit), "{limit} N m, {seed}");
+                let machine = Pendulum::<Damped<Portable>>::new(params, State::HANGING).unwrap();
+                assert!(holds(&plan, machine, limit), "{limit} N m, {seed}");
             }
         }
     }
@@ -262,13 +267,13 @@ fn decisions_hold_at_any_rate() {
         let params = Params { dt: time / rate, ..free };
         let held = [0.1, -0.1, 3.137, -3.13].map(|theta1| {
             let start = State { theta1, ..State::HANGING };
-            let mut planner = Planner::<Portable>::new(params, 10.0).unwrap();
+            let mut swing_up = SwingUp::<Portable>::new(params, 10.0).unwrap();
             let mut machine = Pendulum::<Portable>::new(params, start).unwrap();
             for _ in 0..(60.0 * rate) as u32 {
-                let torque = planner.decide(machine.state()).unwrap();
+                let torque = swing_up.torque(machine.state()).unwrap();
                 machine.step(torque).unwrap();
             }
-            let [x1, x2, ..] = difference(machine.state(), State::UPRIGHT);
+            let [x1, x2, ..] = machine.state().deviation_from(State::UPRIGHT);
             x1.abs().max(x2.abs()) < 0.05
         });
         let swung_up = held[..2].iter().filter(|held| **held).count();
@@ -282,17 +287,16 @@ fn a_regulator_keeps_a_machine_with_dry_friction_moving() {
     let swing = |params: Params, limit: f64, part: f64| {
         let coulomb = Joints { joint1: part * limit, joint2: part * limit };
         let params = Params { coulomb, max_velocity1: 1e9, max_velocity2: 1e9, ..params };
-        let planner = Planner::<Damped<Portable>>::new(params, limit).unwrap();
+        let regulator = BoundedRegulator::<Damped<Portable>>::new(params, limit).unwrap();
         let lean = State { theta1: PI - 0.01, ..State::UPRIGHT };
         let mut machine = Pendulum::<Damped<Portable>>::new(params, lean).unwrap();
         let mut most = 0.0_f64;
         for i in 0..8000 {
-            let torque = planner.follow(&[], 0, machine.state());
-            machine.step(saturate(torque, limit)).unwrap();
-            let [x, ..] = difference(machine.state(), State::UPRIGHT);
+            machine.step(regulator.torque(machine.state())).unwrap();
+            let [x, ..] = machine.state().deviation_from(State::UPRIGHT);
             most = if i < 4000 { 0.0 } else { most.max(x.abs()) };
         }
-        assert_eq!(planner.catches(lean), most < 0.3, "{part} of {limit} N m: {most} rad");
+        assert_eq!(regulator.holds_from(lean), most < 0.3, "{part} of {limit} N m: {most} rad");
         (1000.0 * most).round()
     };
     let gymnasium = Params { dt: 0.01, ..Params::DEFAULT };
@@ -306,12 +310,13 @@ fn a_regulator_keeps_a_machine_with_dry_friction_moving() {
 fn results<A: Arithmetic>(params: &Params, limit: f64, [a, b]: [f64; 2], seed: u64) -> Vec<f64> {
     let (root, torque) = (a.sqrt(), a * b);
     let (params, [limit]) = (scaled(params, a, b, root).cast(), cast([torque * limit]));
-    let mut planner = Planner::<A>::new(params, limit).unwrap();
+    let mut planner = Planner::<A>::new(&Problem::swing_up(params, limit).unwrap()).unwrap();
     let rng = &mut Pcg64::new(seed);
     let mut plan = [Knot::EMPTY; 60];
     let mut memory = [Knot::EMPTY; 60];
-    let found = planner.plan(State::HANGING, 20, rng, &mut memory);
-    let mut results = vec![found.map_or(0.0, |plan| plan.len() as f64)];
+    let mut swing_up = SwingUp::<A>::new(params, limit).unwrap();
+    let found = planner.plan_into(State::HANGING, 20, rng, &mut memory);
+    let mut results = vec![found.map_or(0.0, |plan| plan.knots.len() as f64)];
     planner.guess(State::HANGING, rng, &mut plan).unwrap();
     results.push(planner.improve(State::HANGING, 20, &mut plan).unwrap().to_f64());
     for knot in plan {
@@ -324,8 +329,8 @@ fn results<A: Arithmetic>(params: &Params, limit: f64, [a, b]: [f64; 2], seed: u
         let size = uniform(rng, -6.0, 0.0).exp();
         let [x1, x2, x3, x4] = [0; 4].map(|_| size * uniform(rng, -1.0, 1.0));
         let state = State::from(cast([PI + x1, x2, x3 / root, x4 / root]));
-        results.push(f64::from(u8::from(planner.catches(state))));
-        results.push(planner.decide(state).unwrap().to_f64() / torque);
+        results.push(f64::from(u8::from(planner.regulator().holds_from(state))));
+        results.push(swing_up.torque(state).unwrap().to_f64() / torque);
     }
     results
 }

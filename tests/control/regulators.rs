@@ -3,10 +3,11 @@
 use std::array::from_fn;
 
 use acrobot::arithmetic::Real;
-use acrobot::control::{ControlError, LinearModel, Lqr, linearize_step, lqr};
+use acrobot::control::model::StepModel;
+use acrobot::control::regulator::{Lqr, dlqr};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Pendulum;
-use acrobot::{Params, Portable, State};
+use acrobot::{Error, Params, Portable, State};
 use common::{lines, numbers, text_of};
 
 use crate::{cast, relative, vector};
@@ -26,7 +27,7 @@ const IDENTITY: [[f64; 4]; 4] =
 fn regulate<S: Real>(x: &[f64]) -> Lqr<S> {
     let [a, q] = [&x[..16], &x[20..36]].map(|m| matrix(m).map(cast));
     let b = cast(vector(&x[16..20]));
-    lqr(&LinearModel { a, b }, &q, S::from_f64(x[36])).unwrap()
+    dlqr(&StepModel { a, b }, &q, S::from_f64(x[36])).unwrap()
 }
 
 #[test]
@@ -99,15 +100,15 @@ fn gains_of_special_models_are_exact() {
         (diagonal([0.5; 4]), [0.0; 4], IDENTITY, [0.0; 4]),
         (none, all, IDENTITY, [0.0; 4]),
     ] {
-        let found = lqr(&LinearModel { a, b }, &q, 1.0).unwrap().gain;
+        let found = dlqr(&StepModel { a, b }, &q, 1.0).unwrap().gain;
         assert!(found == expected || relative(&found, &expected) < 1e-14, "{found:?}");
     }
 }
 
 #[test]
 fn the_unit_of_the_weights_changes_no_digit() {
-    let model = LinearModel { a: diagonal([0.5, 0.4, 0.3, 0.2]), b: [1.0; 4] };
-    let of = |unit: f64| lqr(&model, &IDENTITY.map(|row| row.map(|x| x * unit)), unit);
+    let model = StepModel { a: diagonal([0.5, 0.4, 0.3, 0.2]), b: [1.0; 4] };
+    let of = |unit: f64| dlqr(&model, &IDENTITY.map(|row| row.map(|x| x * unit)), unit);
     let gain = of(1.0).unwrap().gain;
     for exponent in [-1000, -1, 1, 1023] {
         assert_eq!(of(2.0_f64.powi(exponent)).unwrap().gain, gain);
@@ -117,15 +118,15 @@ fn the_unit_of_the_weights_changes_no_digit() {
 /// Rounded to `f32`, the exact gain of a motion that grows by 1e9 a step no longer stops it.
 #[test]
 fn a_gain_that_rounding_makes_useless_is_an_error() {
-    fn found<S: Real>() -> Result<(), ControlError> {
+    fn found<S: Real>() -> Result<(), Error> {
         let a = diagonal([1e9, 0.5, 0.4, 0.3]).map(cast::<S, 4>);
         let b = cast([0.3, 0.0, 0.0, 0.0]);
         let q = IDENTITY.map(cast);
-        lqr(&LinearModel { a, b }, &q, S::from_f64(1.0)).map(drop)
+        dlqr(&StepModel { a, b }, &q, S::from_f64(1.0)).map(drop)
     }
     assert_eq!(found::<f64>(), Ok(()));
     let error = f64::from(f32::EPSILON);
-    assert_eq!(found::<f32>(), Err(ControlError::IllConditioned { error }));
+    assert_eq!(found::<f32>(), Err(Error::IllConditioned { error }));
 }
 
 /// Motions that grow by nearly the same factor need large gains, whose rounding matters. Costs far
@@ -134,10 +135,10 @@ fn a_gain_that_rounding_makes_useless_is_an_error() {
 fn a_gain_that_rounding_spoils_is_an_error() {
     let growing = |factor| diagonal([2.0, factor, 0.5, 0.4]);
     let found = |a, weight| {
-        let model = LinearModel { a, b: [1.0; 4] };
-        match lqr(&model, &diagonal([weight; 4]), 1.0) {
+        let model = StepModel { a, b: [1.0; 4] };
+        match dlqr(&model, &diagonal([weight; 4]), 1.0) {
             Ok(_) => 0.0,
-            Err(ControlError::IllConditioned { error }) => error,
+            Err(Error::IllConditioned { error }) => error,
             Err(other) => panic!("{other}"),
         }
     };
@@ -147,14 +148,13 @@ fn a_gain_that_rounding_spoils_is_an_error() {
     assert_eq!(found(growing(3.0), 1e-251), 1.0);
 }
 
-fn upright() -> LinearModel {
-    linearize_step(&Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap(), 0.0)
-        .unwrap()
+fn upright() -> StepModel {
+    Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap().linearize_step(0.0).unwrap()
 }
 
 #[test]
 fn wrong_weights_are_rejected() {
-    let message = |q, r| lqr(&upright(), &q, r).unwrap_err().to_string();
+    let message = |q, r| dlqr(&upright(), &q, r).unwrap_err().to_string();
     for (r, got) in [(0.0, "0"), (-1.0, "-1"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
         let expected = format!("r must be finite and above 0 per (N m)², got {got}");
         assert_eq!(message(IDENTITY, r), expected);
@@ -167,7 +167,7 @@ fn wrong_weights_are_rejected() {
     q[1][3] = 0.5;
     assert_eq!(message(q, 1.0), "q must be symmetric, got 0.5 and 0 on both sides of the diagonal");
     q[3][1] = 0.5;
-    assert!(lqr(&upright(), &q, 1.0).is_ok());
+    assert!(dlqr(&upright(), &q, 1.0).is_ok());
     [q[1][3], q[3][1]] = [2.0, 2.0];
     let rule = "q must be positive semidefinite, got ";
     assert!(message(q, 1.0).starts_with(rule));
@@ -178,12 +178,12 @@ fn wrong_weights_are_rejected() {
     [q[1][3], q[3][1]] = [0.5, 0.5 + 1e-7];
     assert!(message(q, 1.0).starts_with("q must be symmetric, got 0.5 and 0.5000001 on both"));
     let model = upright();
-    let single = LinearModel { a: model.a.map(cast::<f32, 4>), b: cast(model.b) };
-    assert!(lqr(&single, &q.map(cast), 1.0).is_ok());
+    let single = StepModel { a: model.a.map(cast::<f32, 4>), b: cast(model.b) };
+    assert!(dlqr(&single, &q.map(cast), 1.0).is_ok());
 
     // Of rank 1, and so up to rounding.
     let row = [0.1, 0.7, -0.3, 0.9];
-    assert!(lqr(&upright(), &row.map(|x| row.map(|y| x * y)), 1.0).is_ok());
+    assert!(dlqr(&upright(), &row.map(|x| row.map(|y| x * y)), 1.0).is_ok());
 }
 
 /// Weights of the outputs G x are G W Gᵀ, which most products round to a matrix that is not quite
@@ -204,10 +204,10 @@ fn products_are_weights() {
             let q = product(product(g, weights), from_fn(|i| from_fn(|j| g[j][i])));
             let transposed = from_fn(|i| from_fn(|j| q[j][i]));
             skew += u32::from(q != transposed);
-            let LinearModel { a, b } = upright();
-            let model = LinearModel { a: a.map(cast), b: cast(b) };
+            let StepModel { a, b } = upright();
+            let model = StepModel { a: a.map(cast), b: cast(b) };
             let gain = |q| {
-                let Lqr { gain, cost_to_go } = lqr(&model, &q, S::from_f64(1.0)).unwrap();
+                let Lqr { gain, cost_to_go } = dlqr(&model, &q, S::from_f64(1.0)).unwrap();
                 assert_eq!(cost_to_go, from_fn(|i| from_fn(|j| cost_to_go[j][i])));
                 gain
             };
@@ -226,7 +226,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let persistent = diagonal([1.0, 0.5, 0.4, 0.3]);
     let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
     let not_first = [0.0, 1.0, 1.0, 1.0];
-    let (stabilizable, detectable) = (ControlError::NotStabilizable, ControlError::NotDetectable);
+    let (stabilizable, detectable) = (Error::NotStabilizable, Error::NotDetectable);
     for (a, b, q, expected) in [
         (growing, not_first, IDENTITY, stabilizable),
         (persistent, not_first, IDENTITY, stabilizable),
@@ -247,7 +247,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
             stabilizable,
         ),
     ] {
-        let error = lqr(&LinearModel { a, b }, &q, 1.0).unwrap_err();
+        let error = dlqr(&StepModel { a, b }, &q, 1.0).unwrap_err();
         assert_eq!(error, expected, "{a:?} {b:?} {q:?}");
     }
 
@@ -255,12 +255,12 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let params =
         Params { center_of_mass1: 0.0, center_of_mass2: 0.0, gravity: 0.0, ..Params::DEFAULT };
     let pendulum = Pendulum::<Portable>::new(params, State::HANGING).unwrap();
-    let model = linearize_step(&pendulum, 0.0).unwrap();
-    let error = lqr(&model, &IDENTITY, 1.0).unwrap_err();
-    assert_eq!(error, ControlError::NotStabilizable);
+    let model = pendulum.linearize_step(0.0).unwrap();
+    let error = dlqr(&model, &IDENTITY, 1.0).unwrap_err();
+    assert_eq!(error, Error::NotStabilizable);
 
     // What `f32` cannot hold has a name.
-    let model = LinearModel { a: growing.map(cast::<f32, 4>), b: [1e-30; 4] };
-    let error = lqr(&model, &IDENTITY.map(cast), 1.0).unwrap_err();
+    let model = StepModel { a: growing.map(cast::<f32, 4>), b: [1e-30; 4] };
+    let error = dlqr(&model, &IDENTITY.map(cast), 1.0).unwrap_err();
     assert_eq!(error.to_string(), "cost_to_go must be finite in each element, got inf");
 }

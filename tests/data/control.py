@@ -104,7 +104,7 @@ def lagrangian(p, theta, dtheta):
 
 
 def motion(p, y, accelerations, dynamics):
-    """Torques, reaction, force in the elbow, velocities of elbow and tip."""
+    """Torques, reaction, force in the elbow."""
     l1, l2, m1, m2, lc1, lc2, _, _, g, *_ = p
     theta, dtheta = y[:2], y[2:]
     path = lambda t: theta + dtheta * t + accelerations * t**2 / 2
@@ -122,7 +122,7 @@ def motion(p, y, accelerations, dynamics):
     torques = slope(momentum) - force + friction(p, dtheta)
     if dynamics == "nips":
         torques[1] -= m2 * l1 * lc2 * dtheta[0] ** 2 * mpmath.sin(theta[1])
-    return torques, reaction, elbow, velocity(0, l1, 0), velocity(0, l1, l2)
+    return torques, reaction, elbow
 
 
 def regulator(a, b, q, r):
@@ -251,7 +251,7 @@ def main():
         "# " + ", ".join(f"{name} {version(name)}" for name in PACKAGES),
         f"# case DYNAMICS {NAMES}, the state, the torque, two accelerations",
         "# continuous, discrete: A by rows, B",
-        "# motion: torques, reaction, force in the elbow, velocities of elbow and tip",
+        "# motion: torques, reaction, force in the elbow",
         "# lqr THETA1 DT: A, B, Q by rows, R, the gain, the cost by rows",
         "# the second 40 cases: parameters over six decades; the last 40: with friction",
         "# model KIND: A, B, Q by rows and R, all f32, and the gain",

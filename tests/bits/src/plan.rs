@@ -1,9 +1,9 @@
 //! A plan for Gymnasium's acrobot with a strong motor, and a digest of it and of following it.
 
-use acrobot::control::{Knot, NoPlan, Planner};
+use acrobot::control::plan::{Knot, Plan, Planner, Problem};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::saturate;
-use acrobot::{Acrobot, Fast, Params, State};
+use acrobot::{Acrobot, Error, Fast, Params, State};
 
 use crate::Digest;
 
@@ -24,9 +24,13 @@ pub fn params(rate: u32) -> Params<f32> {
 }
 
 /// Plans from hanging at rest, with a largest torque, N m, and decisions per second.
-pub fn plan(limit: f32, rate: u32, memory: &mut Memory) -> Result<&mut [Knot<f32>], NoPlan> {
-    let mut planner = Planner::<Fast>::new(params(rate), limit)?;
-    planner.plan(State::HANGING, 64, &mut Pcg64::new(0), memory)
+pub fn plan(
+    limit: f32,
+    rate: u32,
+    memory: &mut Memory,
+) -> Result<Plan<f32, &mut [Knot<f32>]>, Error> {
+    let mut planner = Planner::<Fast>::new(&Problem::swing_up(params(rate), limit)?)?;
+    planner.plan_into(State::HANGING, 64, &mut Pcg64::new(0), memory)
 }
 
 /// A digest of every bit of the plan, and of the states of an acrobot that follows it.
@@ -49,7 +53,7 @@ pub fn digest(plan: &[Knot<f32>]) -> u64 {
 /// Plans and returns the digest; 0 if there is no plan.
 pub fn planned() -> u64 {
     let mut memory = empty();
-    plan(LIMIT, RATE, &mut memory).map_or(0, |plan| digest(plan))
+    plan(LIMIT, RATE, &mut memory).map_or(0, |plan| digest(plan.knots))
 }
 
 pub const PLAN: u64 = 0x5c85_3777_e0fb_48ab;

@@ -2,11 +2,12 @@
 
 use std::array::from_fn;
 
+use acrobot::Error;
 use acrobot::arithmetic::Real;
-use acrobot::control::{
-    ControlError, Estimator, Evidence, LinearModel, Noise, Sample, inverse_dynamics, linearize,
-    linearize_step, lqr, velocities,
-};
+use acrobot::control::estimate::{Estimator, Noise, ParameterEstimator, ParameterStd};
+use acrobot::control::identify::{Regression, Sample};
+use acrobot::control::model::StepModel;
+use acrobot::control::regulator::dlqr;
 use acrobot::physics::Pendulum;
 use common::in_every_arithmetic;
 use proptest::prelude::*;
@@ -14,10 +15,10 @@ use proptest::prelude::*;
 use crate::given::{Number, Range, Tested, holds, number, params, state};
 
 /// Whether the result is finite, or an error that says what is not.
-fn is_finite<S: Real>(result: Result<Vec<S>, ControlError>) -> bool {
+fn is_finite<S: Real>(result: Result<Vec<S>, Error>) -> bool {
     match result {
         Ok(elements) => elements.iter().all(|x| x.is_finite()),
-        Err(error) => matches!(error, ControlError::NotFinite { .. }),
+        Err(error) => matches!(error, Error::NotFinite { .. }),
     }
 }
 
@@ -28,15 +29,14 @@ fn results_are_finite_or_errors() {
         let given = (params::<A>(Range::Any), state(Range::Any), number(Range::Any), rates);
         holds(1000, given, |(params, state, torque, accelerations)| {
             let pendulum = Pendulum::<A>::new(params, state).unwrap();
-            let continuous = linearize(&pendulum, torque);
-            let discrete = linearize_step(&pendulum, torque);
-            let forces = inverse_dynamics(&pendulum, accelerations);
+            let continuous = pendulum.linearize(torque);
+            let discrete = pendulum.linearize_step(torque);
+            let forces = pendulum.inverse_dynamics(accelerations);
             assert!(is_finite(continuous.map(|model| [model.a.as_flattened(), &model.b].concat())));
             assert!(is_finite(discrete.map(|model| [model.a.as_flattened(), &model.b].concat())));
             assert!(is_finite(
                 forces.map(|forces| { [forces.torques, forces.reaction, forces.elbow].concat() })
             ));
-            assert!(is_finite(velocities(&pendulum).map(|points| points.concat())));
         });
     }
     in_every_arithmetic!(check);
@@ -51,18 +51,30 @@ fn estimates_are_those_of_machines() {
         let noises = [-50.0..0.6_f64, -50.0..5.0_f64];
         holds(300, (params::<A>(Range::Any), noises, ticks), |(params, noises, ticks)| {
             let [angle, torque] = noises.map(|x| A::Scalar::from_f64(x.exp()));
-            let noise = Noise { angle, torque };
+            let noise = Noise { angle_std: angle, torque_std: torque };
             let mut of_state = match Estimator::<A>::new(params, noise) {
                 Ok(estimator) => estimator,
                 // Some motors turn link 2 by more than 1 rad in a step.
-                Err(error) => return assert_eq!(error.name(), "torque"),
+                Err(error) => return assert_eq!(error.name(), "torque_std"),
             };
-            let mut of_params = Estimator::<A, 10>::with_params(params, params, noise).unwrap();
+            let std = ParameterStd {
+                mass1: params.mass1,
+                mass2: params.mass2,
+                length1: params.length1,
+                inertia1: params.inertia1,
+                inertia2: params.inertia2,
+                friction1: params.friction.joint1,
+                friction2: params.friction.joint2,
+                coulomb1: params.coulomb.joint1,
+                coulomb2: params.coulomb.joint2,
+                rotor: A::Scalar::from_f64(params.rotor.to_f64().abs()),
+            };
+            let mut of_params = ParameterEstimator::<A>::new(params, std, noise).unwrap();
             for (angles, torque) in ticks {
-                of_state.measure(angles).unwrap();
-                of_params.measure(angles).unwrap();
-                let _ = (of_state.step(torque), of_params.step(torque));
-                let deviations = [of_state.deviations(), of_params.deviations()];
+                of_state.correct(angles).unwrap();
+                of_params.correct(angles).unwrap();
+                let _ = (of_state.predict(torque), of_params.predict(torque));
+                let deviations = [of_state.state_std(), of_params.state_std()];
                 assert!(deviations.into_iter().flatten().flatten().all(|x| x.is_finite()));
                 of_state.state().validate().unwrap();
                 of_params.state().validate().unwrap();
@@ -83,22 +95,22 @@ fn estimates_are_those_of_machines() {
 }
 
 #[test]
-fn no_recording_tells_nan() {
+fn no_recording_gives_nan() {
     let any = || number::<f64>(Range::Any);
     let sample = [any(), any(), any(), any()];
     let given = (prop::collection::vec(sample, 0..60), any(), any(), 0..4_usize, 0..20_usize);
     holds(2000, given, |(samples, dt, gravity, half, window)| {
         let sample = |[a, b, c, d]: [f64; 4]| Sample { angles: [a, b], torques: [c, d] };
         let samples: Vec<Sample> = samples.into_iter().map(sample).collect();
-        let mut evidence = Evidence::NONE;
-        let result = evidence.add(&samples, dt, gravity, half, window);
-        if !matches!(result, Err(ControlError::NotFinite { .. })) {
+        let mut regression = Regression::EMPTY;
+        let result = regression.add(&samples, dt, gravity, half, window);
+        if !matches!(result, Err(Error::NotFinite { .. })) {
             assert_eq!(result.is_ok(), dt > 0.0 && half > 0 && window > 0);
         }
-        let found = evidence.solve();
+        let found = regression.fit();
         assert!(found.weakest.iter().all(|x| x.is_finite()));
         assert!(found.values.iter().all(|x| !x.is_nan()));
-        assert!(found.errors.iter().all(|x| *x >= 0.0));
+        assert!(found.std_errors.iter().all(|x| *x >= 0.0));
     });
 }
 
@@ -127,8 +139,8 @@ fn regulators_stabilize_or_are_errors() {
             number::<S>(range),
         );
         holds(2000, given, |(a, b, q, r)| {
-            let model = LinearModel { a, b };
-            let Ok(regulator) = lqr(&model, &q, r) else {
+            let model = StepModel { a, b };
+            let Ok(regulator) = dlqr(&model, &q, r) else {
                 return;
             };
             let [gain, cost] = [&regulator.gain[..], regulator.cost_to_go.as_flattened()];

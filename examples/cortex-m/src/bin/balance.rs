@@ -10,9 +10,9 @@
 #![no_std]
 #![no_main]
 
-use acrobot::control::{ControlError, Knot, Planner, difference};
+use acrobot::control::plan::{Knot, Planner};
 use acrobot::physics::saturate;
-use acrobot::{Acrobot, Fast, Params, State};
+use acrobot::{Error, Acrobot, Fast, Params, State};
 use acrobot_cortex_m::ram;
 use bits::plan;
 use cortex_m::Peripherals;
@@ -109,7 +109,7 @@ fn run(
     plan: &[Knot<f32>],
     episodes: u32,
     in_time: bool,
-) -> Result<u32, ControlError> {
+) -> Result<u32, Error> {
     let rate = motor.rate;
     let params = Params { torque_noise: DISTURBANCE, ..plan::params(rate) };
     let planner = Planner::new(params, motor.limit)?;
@@ -149,7 +149,7 @@ fn play(
     motor: Motor,
     plan: &[Knot<f32>],
     in_time: bool,
-) -> Result<Episode, ControlError> {
+) -> Result<Episode, Error> {
     let mut episode = Episode::default();
     while episode.held < HELD * motor.rate && episode.ticks < MOST * motor.rate {
         if in_time {
@@ -169,7 +169,7 @@ fn play(
 
         machine.step_torque(torque)?;
         episode.ticks += 1;
-        let [theta1, theta2, ..] = difference(machine.state(), State::UPRIGHT);
+        let [theta1, theta2, ..] = machine.state().deviation_from(State::UPRIGHT);
         let deviation = theta1.abs().max(theta2.abs());
         if deviation > 0.1 {
             (episode.held, episode.error) = (0, 0.0);

@@ -6,13 +6,11 @@
 use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real, Reference};
-use acrobot::control::{
-    ControlError, Estimator, Noise, difference, inverse_dynamics, linearize, linearize_step, lqr,
-    velocities,
-};
+use acrobot::control::estimate::{Estimator, Noise};
+use acrobot::control::regulator::{dlqr};
 use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Theme};
-use acrobot::{Acrobot, Action, Fast, Params, State};
+use acrobot::{Error, Acrobot, Action, Fast, Params, State};
 use acrobot_cortex_m::counter::Counter;
 use bits::oled::{self, Display};
 use cortex_m_rt::entry;
@@ -55,32 +53,32 @@ fn step(acrobot: &mut Acrobot<Fast>) {
 }
 
 /// A controller at 100 Hz, about the upright position.
-fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), ControlError> {
+fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Error> {
     let params = Params { dt: A::Scalar::from_f64(0.01), ..Params::default() };
     let pendulum = Pendulum::<A>::new(params, State::UPRIGHT)?;
     let [zero, one] = [0.0, 1.0].map(A::Scalar::from_f64);
     let weights =
         core::array::from_fn(|i| core::array::from_fn(|j| if i == j { one } else { zero }));
-    let model = linearize_step(&pendulum, zero)?;
-    let regulator = lqr(&model, &weights, one)?;
+    let model = pendulum.linearize_step(zero)?;
+    let regulator = dlqr(&model, &weights, one)?;
     let mut print = |figure, run: &mut dyn FnMut()| {
         println!("{name} {figure} {}", counter.count(100, run));
     };
     print("linearize", &mut || {
-        let _ = black_box(linearize(black_box(&pendulum), zero));
+        let _ = black_box(black_box(&pendulum).linearize(zero));
     });
     print("linearize_step", &mut || {
-        let _ = black_box(linearize_step(black_box(&pendulum), zero));
+        let _ = black_box(black_box(&pendulum).linearize_step(zero));
     });
     print("lqr", &mut || {
-        let _ = black_box(lqr(black_box(&model), &weights, one));
+        let _ = black_box(dlqr(black_box(&model), &weights, one));
     });
     print("torque", &mut || {
-        let x = difference(black_box(pendulum.state()), State::UPRIGHT);
+        let x = black_box(pendulum.state()).deviation_from(State::UPRIGHT);
         black_box(regulator.torque(x));
     });
     print("inverse_dynamics", &mut || {
-        let _ = black_box(inverse_dynamics(black_box(&pendulum), [one, one]));
+        let _ = black_box(black_box(&pendulum).inverse_dynamics([one, one]));
     });
     print("velocities", &mut || {
         let _ = black_box(velocities(black_box(&pendulum)));
@@ -89,7 +87,7 @@ fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Contr
 }
 
 /// A measurement and a step of the same machine.
-fn estimators<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), ControlError> {
+fn estimators<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Error> {
     let params = Params { dt: A::Scalar::from_f64(0.01), ..Params::default() };
     let noise = Noise { angle: A::Scalar::from_f64(1e-3), torque: A::Scalar::from_f64(0.05) };
     let mut of_state = Estimator::<Damped<A>>::new(params, noise)?;

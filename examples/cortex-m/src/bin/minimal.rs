@@ -9,7 +9,7 @@ use core::fmt::{self, Write as _};
 use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Reference};
-use acrobot::control::{difference, linearize_step, lqr};
+use acrobot::control::regulator::{dlqr};
 use acrobot::physics::Pendulum;
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable};
 use acrobot_cortex_m::{nop, stack};
@@ -64,18 +64,18 @@ fn set_params(acrobot: &mut Acrobot<Fast>) -> Result<(), Error> {
 
 /// Computes a gain, and the torque.
 fn regulate(acrobot: &mut Acrobot<Fast>) {
-    if let Ok(model) = linearize_step(acrobot.pendulum(), 0.0)
-        && let Ok(regulator) = lqr(&model, &black_box([[1.0; 4]; 4]), 1.0)
+    if let Ok(model) = acrobot.pendulum().linearize_step(0.0)
+        && let Ok(regulator) = dlqr(&model, &black_box([[1.0; 4]; 4]), 1.0)
     {
-        let x = difference(acrobot.pendulum().state(), acrobot.state());
+        let x = acrobot.pendulum().state().deviation_from(acrobot.state());
         black_box(regulator.torque(x));
     }
 }
 
 fn print_stack() -> ! {
-    let model = linearize_step(&Pendulum::<Fast>::hanging(), 0.0);
+    let model = Pendulum::<Fast>::hanging().linearize_step(0.0);
     let bytes = stack::depth(|| {
-        let _ = black_box(model.map(|model| lqr(&model, &black_box([[1.0; 4]; 4]), 1.0)));
+        let _ = black_box(model.map(|model| dlqr(&model, &black_box([[1.0; 4]; 4]), 1.0)));
     });
     println!("fast lqr_stack {}", bytes.unwrap_or_default());
     process::exit(if bytes.is_some() { 0 } else { 1 })

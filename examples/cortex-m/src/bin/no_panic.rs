@@ -13,10 +13,10 @@ use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
-use acrobot::control::{
-    self, Cost, Estimator, Evidence, Knot, Noise, Planner, Sample, difference, inverse_dynamics,
-    linearize, linearize_step, lqr, regulator, velocities,
-};
+use acrobot::control::estimate::{Estimator, Noise};
+use acrobot::control::identify::{Regression, Sample};
+use acrobot::control::plan::{Cost, Knot, Planner};
+use acrobot::control::regulator::{dlqr};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
@@ -119,17 +119,17 @@ fn control<A: Arithmetic>() {
     };
     let weights = [(); 4].map(|()| [(); 4].map(|()| number()));
     let _ = black_box((
-        linearize(&pendulum, number()),
-        inverse_dynamics(&pendulum, [number(), number()]),
+        pendulum.linearize(number()),
+        pendulum.inverse_dynamics([number(), number()]),
         velocities(&pendulum),
-        regulator(&pendulum, number(), &weights, number()),
+        pendulum.regulator(number(), &weights, number()),
     ));
-    let Ok(model) = linearize_step(&pendulum, number()) else {
+    let Ok(model) = pendulum.linearize_step(number()) else {
         return;
     };
-    if let Ok(regulator) = black_box(lqr(&model, &weights, number())) {
-        black_box(difference(pendulum.state(), state()));
-        black_box(regulator.torque(difference(pendulum.state(), state())));
+    if let Ok(regulator) = black_box(dlqr(&model, &weights, number())) {
+        black_box(pendulum.state().deviation_from(state()));
+        black_box(regulator.torque(pendulum.state().deviation_from(state())));
     }
 }
 
@@ -267,17 +267,17 @@ fn estimator<A: Arithmetic>() {
             let angles = [number(), number()];
             let _ = black_box((of_state.measure(angles), of_state.step(number())));
             let _ = black_box((of_params.measure(angles), of_params.step(number())));
-            black_box((of_state.state(), of_params.deviations(), of_params.params()));
+            black_box((of_state.state(), of_params.state_std(), of_params.params()));
         }
     }
 }
 
 fn identify() {
     let samples = [Sample { angles: [number(); 2], torques: [number(); 2] }; 20];
-    let mut evidence = Evidence::NONE;
+    let mut regression = Regression::EMPTY;
     let (half, window) = (black_box(1), black_box(2));
-    let _ = black_box(evidence.add(black_box(&samples), number(), number(), half, window));
-    let _ = black_box(evidence.solve().params(params()));
+    let _ = black_box(regression.add(black_box(&samples), number(), number(), half, window));
+    let _ = black_box(regression.fit().params(params()));
     let found = control::identify(&[black_box(&samples)], params());
     let horizon = black_box(3);
     let _ = black_box((found, control::prediction_error(params(), &samples, horizon)));

@@ -8,21 +8,25 @@
 use core::cell::RefCell;
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::ControlError;
+
 use acrobot::physics::Joints;
-use acrobot::{Fast, Params};
+use acrobot::{Error, Fast, Params};
 use acrobot_cortex_m::ram;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{Peripherals, SCB, SYST};
 use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
-use mpc::{Controller, Machine, Replanner, Settings};
+use acrobot::control::mpc::{Controller, Replanner, Settings};
+use machine::{Machine, realaigym};
 use semihosting::{println, process};
 
 /// Counts of SysTick from tick to tick, and instructions of a count under QEMU's `-icount shift=0`:
 /// those of an STM32F4 at 168 MHz in 2 ms, with 1.9 cycles an instruction.
 const PERIOD: u32 = 4_420;
 const PER_COUNT: u32 = 40;
+/// Counts of each encoder for a turn, and the standard deviation of the torque, N m.
+const COUNTS: [i32; 2] = [4096, 4096];
+const NOISE: f64 = 0.02;
 /// Ticks before the push, and after it.
 const TICKS: u32 = 2500;
 
@@ -38,11 +42,11 @@ struct Real {
 
 static REAL: Mutex<RefCell<Option<Real>>> = Mutex::new(RefCell::new(None));
 
-fn start() -> Result<Replanner<100>, ControlError> {
-    let machine = Machine::new(1)?;
+fn start() -> Result<Replanner<100>, Error> {
+    let machine = Machine::new(realaigym(), COUNTS, 0, NOISE, 1)?;
     let (friction, coulomb) = (Joints::default(), Joints::default());
     let params = Params { friction, coulomb, ..machine.params() };
-    let settings = Settings { params: params.cast(), limit: 6.0, counts: [4096; 2], ticks: 5 };
+    let settings = Settings { params: params.cast(), limit: 6.0, counts: COUNTS, ticks: 5 };
     let controller = Controller::new(settings)?;
     let real = Real { machine, controller, ticks: 0, upright: [0; 2], slowest: 0 };
     critical_section::with(|cs| REAL.replace(cs, Some(real)));
@@ -100,7 +104,7 @@ fn SysTick() {
     }
 }
 
-fn tick(real: &mut Real) -> Result<(), ControlError> {
+fn tick(real: &mut Real) -> Result<(), Error> {
     let counts = real.machine.counts();
     let before = SYST::get_current();
     let torque = real.controller.tick(counts)?;

@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 
-use acrobot::control::{Knot, Planner};
+use acrobot::control::plan::{Knot, Planner, Problem};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Params, Portable, State};
@@ -36,7 +36,7 @@ const RING: usize = 8;
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
     let params = Params { dt: 0.02, ..Params::DEFAULT };
-    let mut planner = Planner::<Portable>::new(params, PLANNED * LIMIT)?;
+    let mut planner = Planner::<Portable>::new(&Problem::swing_up(params, PLANNED * LIMIT)?)?;
     let mut acrobot = Pendulum::<Portable>::new(params, State::HANGING)?;
     let mut memory = [Knot::EMPTY; PLAN];
     let mut states = Vec::new();
@@ -45,12 +45,12 @@ fn main() -> anyhow::Result<()> {
         state.dtheta1 += push[0];
         state.dtheta2 += push[1];
         acrobot.set_state(state)?;
-        let plan = planner.plan(state, 64, &mut Pcg64::new(1), &mut memory)?;
+        let plan = planner.plan_into(state, 64, &mut Pcg64::new(1), &mut memory)?;
         for step in 0..STEPS {
             if step % STEPS_PER_FRAME == 0 {
                 states.push(acrobot.state());
             }
-            acrobot.step(saturate(planner.follow(plan, step, acrobot.state()), LIMIT))?;
+            acrobot.step(saturate(plan.torque(step, acrobot.state()), LIMIT))?;
         }
     }
     let pushed = STEPS / STEPS_PER_FRAME..STEPS / STEPS_PER_FRAME + RING;

@@ -11,15 +11,18 @@
 use std::f64::consts::TAU;
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{ControlError, Evidence, Sample};
+use acrobot::control::identify::{Regression, Sample};
+use acrobot::control::mpc::{Controller, Replanner, Settings};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Joints;
-use acrobot::{Params, Portable};
+use acrobot::{Error, Params, Portable};
 use clap::Parser;
-use mpc::{Controller, Replanner, Settings};
+use machine::{Machine, realaigym};
 use rayon::prelude::*;
 
-type Machine = mpc::Machine<Damped<Portable>>;
+/// Counts of each encoder for a turn, and the standard deviation of the torque, N m.
+const COUNTS: [i32; 2] = [4096, 4096];
+const NOISE: f64 = 0.02;
 
 /// Ticks of 2 ms between two pushes.
 const TICKS: u32 = 5000;
@@ -43,15 +46,19 @@ struct Options {
     slice: u32,
 }
 
+fn machine(seed: u64) -> Result<Machine<Damped<Portable>>, Error> {
+    Machine::new(realaigym(), COUNTS, 0, NOISE, seed)
+}
+
 /// What the controller believes of a machine, given the true parameters.
-type Model = fn(Params, u64) -> Result<Params, ControlError>;
+type Model = fn(Params, u64) -> Result<Params, Error>;
 
 /// The motion of a machine between pushes: seconds until upright, if it then stays there.
 type Motion = [Option<f64>; PUSHES.len()];
 
 /// Shakes a machine for 10 s with up to 3 N m, and identifies it from what the encoders counted.
-fn identified(truth: Params, seed: u64) -> Result<Params, ControlError> {
-    let (mut machine, mut rng) = (Machine::new(seed)?, Pcg64::new(seed));
+fn identified(truth: Params, seed: u64) -> Result<Params, Error> {
+    let (mut machine, mut rng) = (machine(seed)?, Pcg64::new(seed));
     let (mut recording, mut torque, mut left) = (Vec::new(), 0.0, 0.0);
     let mut angles = [0.0; 2];
     for _ in 0..TICKS {
@@ -61,22 +68,22 @@ fn identified(truth: Params, seed: u64) -> Result<Params, ControlError> {
         left -= truth.dt;
         // A real encoder counts on after a turn.
         for (angle, count) in angles.iter_mut().zip(machine.counts()) {
-            let turns = f64::from(count) / 4096.0 - *angle / TAU;
+            let turns = f64::from(count) / f64::from(COUNTS[0]) - *angle / TAU;
             *angle += (turns - turns.round()) * TAU;
         }
         recording.push(Sample { angles, torques: [0.0, torque.into()] });
         machine.step(torque)?;
     }
-    let mut evidence = Evidence::NONE;
-    evidence.add(&recording, truth.dt, truth.gravity, 2, 250)?;
+    let mut regression = Regression::EMPTY;
+    regression.add(&recording, truth.dt, truth.gravity, 2, 250)?;
     // Masses, inertias and friction as drawn do not count, except for centres of mass.
-    Ok(evidence.solve().params(Params { mass1: 1.0, mass2: 1.0, ..truth })?)
+    Ok(regression.fit().params(Params { mass1: 1.0, mass2: 1.0, ..truth })?)
 }
 
-fn control(seed: u64, slice: u32, model: Model) -> Result<Motion, ControlError> {
-    let mut machine = Machine::new(seed)?;
+fn control(seed: u64, slice: u32, model: Model) -> Result<Motion, Error> {
+    let mut machine = machine(seed)?;
     let params = model(machine.params(), seed)?.cast();
-    let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
+    let settings = Settings { params, limit: 6.0, counts: COUNTS, ticks: 5 };
     let mut controller = Controller::<100>::new(settings)?;
     let mut replanner = Replanner::new(settings)?;
     let mut motion = Motion::default();

@@ -4,7 +4,7 @@
 //! the score at the plan before.
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::control::{Cost, Knot, Planner};
+use acrobot::control::plan::{Cost, Knot, Plan, Planner, Problem};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::{Params, Portable, State};
 use anyhow::Context;
@@ -17,16 +17,20 @@ const STEPS: usize = 5000;
 const ITERATIONS: u32 = 60;
 
 /// Its cost comes first.
-type Plan<S> = (f64, Vec<Knot<S>>);
+type Improved<S> = (f64, Vec<Knot<S>>);
 
 /// The best swing-up of so many guesses, and its costs.
 pub fn search(version: Version, params: Params, tries: u32) -> anyhow::Result<(Costs, Robot)> {
     let score = |played: &(Costs, Robot)| version.score(played.0);
-    let planner = |limit, costs| Planner::with_cost(params, limit, weigh(version, &params, costs));
-    let play = |planner: &Planner<Portable>, plan: &[Knot<f64>]| -> anyhow::Result<_> {
+    let planner = |limit, costs| {
+        let problem = Problem::swing_up(params, limit)?;
+        Planner::new(&Problem { cost: weigh(version, problem, costs), ..problem })
+    };
+    let play = |planner: &Planner<Portable>, knots: &[Knot<f64>]| -> anyhow::Result<_> {
+        let plan = Plan { knots, after: *planner.regulator().feedback() };
         let mut robot = Robot::hanging(params)?;
         for step in 0..STEPS {
-            robot.step([0.0, planner.follow(plan, step, robot.pendulum.state())])?;
+            robot.step([0.0, plan.torque(step, robot.pendulum.state())])?;
         }
         Ok((costs(params, &robot.rows)?, robot))
     };
@@ -59,7 +63,7 @@ pub fn search(version: Version, params: Params, tries: u32) -> anyhow::Result<(C
     found.into_iter().max_by(|a, b| score(a).total_cmp(&score(b))).context("no tries")
 }
 
-fn weigh(version: Version, params: &Params, costs: Costs) -> Cost {
+fn weigh(version: Version, Problem { params, cost, .. }: Problem, costs: Costs) -> Cost {
     let slope = |i: usize| {
         let (mut more, part) = (costs, 1e-4 * costs[i]);
         more[i] += part;
@@ -77,6 +81,7 @@ fn weigh(version: Version, params: &Params, costs: Costs) -> Cost {
         height: 0.9 * (params.length1 + params.length2),
         margin: 0.015,
         arrival: 3.0,
+        ..cost
     }
 }
 
@@ -87,7 +92,7 @@ pub fn plans<A: Arithmetic>(
     rng: &mut Pcg64,
     steps: f64,
     tries: u32,
-) -> anyhow::Result<Vec<Plan<A::Scalar>>> {
+) -> anyhow::Result<Vec<Improved<A::Scalar>>> {
     let mut plans = Vec::new();
     for _ in 0..tries {
         let mut plan = vec![Knot::EMPTY; uniform(rng, steps, 3.0 * steps) as usize];
@@ -95,7 +100,7 @@ pub fn plans<A: Arithmetic>(
         plans.push(plan);
     }
     plans.sort_by_key(Vec::len); // those side by side have similar lengths
-    let costs = planner.improve_all(start, ITERATIONS, &mut plans)?;
-    let costs = costs.into_iter().map(|cost| cost.map_or(f64::INFINITY, Real::to_f64));
-    Ok(costs.zip(plans).collect())
+    let starts = vec![start; plans.len()];
+    let costs = planner.improve_each(&starts, ITERATIONS, &mut plans)?;
+    Ok(costs.into_iter().map(Real::to_f64).zip(plans).collect())
 }

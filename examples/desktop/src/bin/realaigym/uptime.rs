@@ -3,7 +3,7 @@
 use std::array::from_fn;
 use std::time::{Duration, Instant};
 
-use acrobot::control::{Cost, Knot, Planner, difference, inverse_dynamics};
+use acrobot::control::plan::{Cost, Knot, Plan, Planner, Problem};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::saturate;
 use acrobot::task::Task;
@@ -25,8 +25,9 @@ const RESETS: usize = 15;
 /// Returns the longest time of a plan, too.
 pub fn play(seed: u64, resets: &[Reset], tries: u32) -> anyhow::Result<(Robot, Duration)> {
     let params: Params<f32> = Params { dt: EVERY as f64 * C1.dt, ..C1 }.cast();
-    let cost = Cost { torque: 4e-3, arrival: 2.0, ..Cost::new(&params, LIMIT as f32)? };
-    let mut planner = Planner::<Fast>::with_cost(params, LIMIT as f32, cost)?;
+    let mut problem = Problem::swing_up(params, LIMIT as f32)?;
+    problem.cost = Cost { torque: 4e-3, arrival: 2.0, ..problem.cost };
+    let mut planner = Planner::<Fast>::new(&problem)?;
     let (mut robot, mut rng) = (Robot::hanging(C1)?, Pcg64::new(seed));
     let (mut longest, mut sums, mut before) = (Duration::ZERO, [0.0; 2], None);
     for i in 1..=RESETS + 1 {
@@ -39,18 +40,19 @@ pub fn play(seed: u64, resets: &[Reset], tries: u32) -> anyhow::Result<(Robot, D
             (0..PLANNING).try_for_each(|_| ahead.step([0.0; 2]))?;
             let began = Instant::now();
             let state = ahead.pendulum.state().cast();
-            let plan = search(&mut planner, state, &mut rng, tries)?;
+            let knots = search(&mut planner, state, &mut rng, tries)?;
+            let plan = Plan { knots, after: *planner.regulator().feedback() };
             longest = longest.max(began.elapsed());
             let mut torque = 0.0;
             for step in 0.. {
                 let state = robot.pendulum.state();
-                let [theta1, ..] = difference(state, State::UPRIGHT);
+                let [theta1, ..] = state.deviation_from(State::UPRIGHT);
                 let has_fallen = step > 1000 && theta1.abs() > 0.5;
                 if robot.rows.len() >= end || has_fallen {
                     break;
                 }
                 if step >= PLANNING && step % EVERY == 0 {
-                    torque = planner.follow(&plan, (step - PLANNING) / EVERY, state.cast()).into();
+                    torque = plan.torque((step - PLANNING) / EVERY, state.cast()).into();
                 }
                 robot.step([0.0, torque])?;
             }
@@ -63,7 +65,7 @@ pub fn play(seed: u64, resets: &[Reset], tries: u32) -> anyhow::Result<(Robot, D
             let state = robot.pendulum.state();
             let mut resting = robot.pendulum.clone();
             resting.set_state(State { dtheta1: 0.0, dtheta2: 0.0, ..state })?;
-            let weights = inverse_dynamics(&resting, [0.0; 2])?.torques;
+            let weights = resting.inverse_dynamics([0.0; 2])?.torques;
             let errors = [goal[0] - state.theta1, goal[1] - state.theta2];
             let last = before.replace(errors).unwrap_or(errors);
             robot.step(from_fn(|j| {
@@ -90,7 +92,7 @@ fn search(
     for _ in 0..tries.div_ceil(SIDE) {
         for plan in plans(planner, start, rng, 60.0, SIDE)? {
             let end = plan.1.last().map(|knot| knot.state);
-            if plan.0 < best.0 && end.is_some_and(|end| planner.catches(end)) {
+            if plan.0 < best.0 && end.is_some_and(|end| planner.regulator().holds_from(end)) {
                 best = plan;
             }
         }

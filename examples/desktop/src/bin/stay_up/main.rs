@@ -14,11 +14,11 @@ mod search;
 use std::ops::Range;
 
 use acrobot::arithmetic::Arithmetic;
-use acrobot::control::{Knot, NoPlan, Planner, difference};
+use acrobot::control::plan::{Knot, Plan, Planner, Problem};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::saturate;
 use acrobot::task::Task;
-use acrobot::{Acrobot, Fast, Params, State};
+use acrobot::{Acrobot, Error, Fast, Params, State};
 use clap::Parser;
 use rayon::prelude::*;
 use search::Search;
@@ -61,17 +61,16 @@ struct Episode {
 }
 
 impl Episode {
-    /// Follows a plan, and then the regulator.
+    /// Follows a plan.
     fn play<A: Arithmetic<Scalar = f32>, T: Task>(
         mut acrobot: Acrobot<A, T>,
-        planner: &Planner<A>,
-        plan: &[Knot<f32>],
+        plan: &Plan<f32, &[Knot<f32>]>,
         limit: f32,
         steps: usize,
     ) -> anyhow::Result<Self> {
         let mut episode = Self::default();
         for i in 0..steps {
-            let torque = planner.follow(plan, i, acrobot.state());
+            let torque = plan.torque(i, acrobot.state());
             episode.step(&mut acrobot, saturate(torque, limit), i)?;
         }
         Ok(episode)
@@ -85,7 +84,7 @@ impl Episode {
         i: usize,
     ) -> anyhow::Result<()> {
         self.total += f64::from(acrobot.step_torque(torque)?.reward);
-        let [theta1, theta2, ..] = difference(acrobot.state(), State::UPRIGHT);
+        let [theta1, theta2, ..] = acrobot.state().deviation_from(State::UPRIGHT);
         if theta1.abs().max(theta2.abs()) > 0.1 {
             self.upright = i + 1;
         }
@@ -117,14 +116,15 @@ fn swing_up(seed: u64) -> anyhow::Result<Episode> {
 fn gymnasium(seed: u64) -> anyhow::Result<Episode> {
     let params = Params { dt: 1.0 / RATE as f32, ..Params::DEFAULT };
     let acrobot = Acrobot::<Fast>::with_params(seed, params)?;
-    let mut planner = Planner::<Fast>::new(params, GYMNASIUM)?;
-    let found = planner.search(acrobot.state(), TRIES, &mut Pcg64::new(seed), STEPS);
-    let plan = match found {
-        Ok(plan) => plan,
-        Err(NoPlan::NotFound { .. }) => vec![],
+    let mut planner = Planner::<Fast>::new(&Problem::swing_up(params, GYMNASIUM)?)?;
+    let found = planner.plan(acrobot.state(), TRIES, &mut Pcg64::new(seed), STEPS);
+    let knots = match found {
+        Ok(plan) => plan.knots,
+        Err(Error::NoPlan { .. }) => vec![],
         Err(error) => return Err(error.into()),
     };
-    Episode::play(acrobot, &planner, &plan, GYMNASIUM, 50 * RATE)
+    let plan = Plan { knots: &*knots, after: *planner.regulator().feedback() };
+    Episode::play(acrobot, &plan, GYMNASIUM, 50 * RATE)
 }
 
 fn main() -> anyhow::Result<()> {

@@ -6,13 +6,14 @@ use std::array::from_fn;
 use std::time::{Duration, Instant};
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{Estimator, Knot, Noise};
+use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
+use acrobot::control::plan::{Knot, Plan};
 use acrobot::numpy::uniform;
-use acrobot::physics::{Joints, saturate};
+use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, Portable};
 use rayon::prelude::*;
 
-use crate::search::{Plan, Search};
+use crate::search::{Knots, Search};
 use crate::{Episode, GYMNASIUM, LENGTHS, RATE, STEPS, SWINGUP};
 
 /// The part of the motor's torque that plans use. The rest corrects deviations.
@@ -71,24 +72,23 @@ fn motions(search: Search, limit: f32, every: usize, part: usize) -> anyhow::Res
 
 fn play(
     mut search: Search,
-    mut plan: Plan,
+    mut plan: Knots,
     (limit, every): (f32, usize),
     (error, angle): Case,
 ) -> anyhow::Result<Motion> {
     let (mut acrobot, steps, rng) = (search.acrobot.clone(), search.steps, &mut search.rng.clone());
     let params = *acrobot.params();
     let given: Params = params.cast();
-    let deviations = Params {
+    let std = ParameterStd {
         mass1: DOUBT * given.mass1,
         mass2: DOUBT * given.mass2,
         length1: DOUBT * given.length1,
         inertia1: DOUBT * (given.inertia1 + given.mass1 * given.center_of_mass1.powi(2)),
         inertia2: DOUBT * (given.inertia2 + given.mass2 * given.center_of_mass2.powi(2)),
-        friction: Joints { joint1: 0.0, joint2: 0.0 },
-        ..Params::DEFAULT
+        ..ParameterStd::default()
     };
-    let noise = Noise { angle: angle.max(1e-6) / 3.0_f64.sqrt(), torque: 1e-3 };
-    let mut estimator = Estimator::<Damped<Portable>, 10>::with_params(given, deviations, noise)?;
+    let noise = Noise { angle_std: angle.max(1e-6) / 3.0_f64.sqrt(), torque_std: 1e-3 };
+    let mut estimator = ParameterEstimator::<Damped<Portable>>::new(given, std, noise)?;
     let mut wrong = |x: f32| x * (1.0 + uniform(rng, -error, error)) as f32;
     acrobot.set_params(Params {
         mass1: wrong(params.mass1),
@@ -103,9 +103,9 @@ fn play(
         let state = <[f32; 4]>::from(acrobot.state());
         let measured = from_fn(|j| f64::from(state[j]) + uniform(rng, -angle, angle));
         let before = Instant::now();
-        estimator.measure(measured)?;
+        estimator.correct(measured)?;
         let state = estimator.state().cast();
-        if search.planner.catches(state) {
+        if search.planner.regulator().holds_from(state) {
             next = plan.len();
         } else if i % every == 0 || next >= plan.len() {
             let rest = plan.split_off(next.min(plan.len()));
@@ -113,9 +113,10 @@ fn play(
             plan = search.again(state, estimator.params().cast(), steps - i, rest)?;
             next = 0;
         }
-        let torque = saturate(search.planner.follow(&plan, next, state), limit);
+        let following = Plan { knots: &plan, after: *search.planner.regulator().feedback() };
+        let torque = saturate(following.torque(next, state), limit);
         next += 1;
-        estimator.step(torque.into())?;
+        estimator.predict(torque.into())?;
         let took = before.elapsed();
         (planning, longest) = (planning + took, longest.max(took));
         episode.step(&mut acrobot, torque, i)?;

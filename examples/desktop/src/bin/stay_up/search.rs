@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{Cost, Knot, Planner};
+use acrobot::control::plan::{Knot, Plan, Planner, Problem};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::saturate;
 use acrobot::task::Swingup;
@@ -31,7 +31,7 @@ const WINDOW: usize = 30;
 const AGAIN: u32 = 12;
 const TRIES: usize = 2;
 
-pub type Plan = Vec<Knot<f32>>;
+pub type Knots = Vec<Knot<f32>>;
 
 #[derive(Clone)]
 pub struct Search {
@@ -54,10 +54,11 @@ impl Search {
         steps: usize,
         seed: u64,
     ) -> anyhow::Result<Self> {
-        let cost = Cost::new(acrobot.params(), limit)?;
+        let mut problem = Problem::swing_up(*acrobot.params(), limit)?;
         // Each step upright earns more than a plan needs to hold.
-        let cost = Cost { torque: 1.4 * cost.torque, below: 1.75 * cost.below, ..cost };
-        let planner = Planner::with_cost(*acrobot.params(), limit, cost)?;
+        problem.cost.torque *= 1.4;
+        problem.cost.below *= 1.75;
+        let planner = Planner::new(&problem)?;
         Ok(Self { acrobot, planner, limit, lengths, steps, rng: Pcg64::new(seed) })
     }
 
@@ -65,17 +66,19 @@ impl Search {
     fn improve(
         &mut self,
         iterations: u32,
-        mut plans: Vec<Plan>,
-    ) -> anyhow::Result<Vec<(Episode, Plan)>> {
-        self.planner.improve_all(self.acrobot.state(), iterations, &mut plans)?;
-        let play = |plan: Plan| {
-            let acrobot = self.acrobot.clone();
-            Ok((Episode::play(acrobot, &self.planner, &plan, self.limit, self.steps)?, plan))
+        mut plans: Vec<Knots>,
+    ) -> anyhow::Result<Vec<(Episode, Knots)>> {
+        let starts = vec![self.acrobot.state(); plans.len()];
+        self.planner.improve_each(&starts, iterations, &mut plans)?;
+        let after = *self.planner.regulator().feedback();
+        let play = |knots: Knots| {
+            let plan = Plan { knots: &*knots, after };
+            Ok((Episode::play(self.acrobot.clone(), &plan, self.limit, self.steps)?, knots))
         };
         plans.into_iter().map(play).collect()
     }
 
-    fn guess(&mut self) -> anyhow::Result<Plan> {
+    fn guess(&mut self) -> anyhow::Result<Knots> {
         let mut plan = vec![Knot::EMPTY; self.draw(self.lengths.start, self.lengths.end)];
         self.planner.guess(self.acrobot.state(), &mut self.rng, &mut plan)?;
         Ok(plan)
@@ -87,7 +90,7 @@ impl Search {
     }
 
     /// A changed copy of a plan.
-    fn change(&mut self, plan: &[Knot<f32>]) -> Plan {
+    fn change(&mut self, plan: &[Knot<f32>]) -> Knots {
         let mut torques: Vec<f32> = plan.iter().map(|knot| knot.torque).collect();
         let end = self.draw(1, torques.len() + 1);
         let window = end - self.draw(1, WINDOW + 1).min(end)..end;
@@ -108,15 +111,16 @@ impl Search {
     }
 
     /// The best plan of a part of the search.
-    pub fn run(&mut self, part: usize) -> anyhow::Result<(Episode, Plan)> {
+    pub fn run(&mut self, part: usize) -> anyhow::Result<(Episode, Knots)> {
         let mut guesses = Vec::new();
         for _ in 0..GUESSES / part {
             guesses.push(self.guess()?);
         }
         guesses.sort_by_key(Vec::len); // those side by side have similar lengths
-        let costs = self.planner.improve_all(self.acrobot.state(), FEW, &mut guesses)?;
+        let starts = vec![self.acrobot.state(); guesses.len()];
+        let costs = self.planner.improve_each(&starts, FEW, &mut guesses)?;
         let mut guesses: Vec<_> = costs.into_iter().zip(guesses).collect();
-        guesses.sort_by(|(a, _), (b, _)| value(a).total_cmp(&value(b)));
+        guesses.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         guesses.truncate(KEPT / part.min(4));
         let mut best = self.improve(ALL, guesses.into_iter().map(|(_, plan)| plan).collect())?;
         let rounds = ROUNDS / part;
@@ -143,11 +147,11 @@ impl Search {
         state: State<f32>,
         params: Params<f32>,
         steps: usize,
-        rest: Plan,
-    ) -> anyhow::Result<Plan> {
+        rest: Knots,
+    ) -> anyhow::Result<Knots> {
         self.acrobot.set_params(params)?;
         self.acrobot.set_state(state)?;
-        self.planner = Planner::new(params, self.limit)?;
+        self.planner = Planner::new(&Problem::swing_up(params, self.limit)?)?;
         self.steps = steps;
         let mut best = self.improve(AGAIN, vec![rest])?.swap_remove(0);
         for _ in 0..TRIES {
@@ -166,9 +170,4 @@ impl Search {
         }
         Ok(best.1)
     }
-}
-
-/// The cost of a plan; infinite where the numbers overflow.
-fn value<E>(cost: &Result<f32, E>) -> f32 {
-    *cost.as_ref().unwrap_or(&f32::INFINITY)
 }

@@ -1,0 +1,7 @@
+//! Estimates the state of a machine from its angles alone, and its parameters.
+
+mod estimator;
+mod noise;
+
+pub use estimator::{Estimator, KalmanFilter, ParameterEstimator, ParameterStd};
+pub use noise::Noise;

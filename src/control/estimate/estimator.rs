@@ -1,0 +1,401 @@
+//! Estimates the state of a machine from its angles alone, and its parameters: an extended Kalman
+//! filter.
+//!
+//! What the model does not say acts as a torque of the motor, whose variance follows the errors of
+//! the predicted angles. After a push the velocities are in doubt, but not the parameters.
+//!
+//! Constants have the machine's own units or none. Those that count measurements are of statistics,
+//! which need a number of samples and not a time.
+
+use core::array::from_fn;
+
+use super::noise::{Given, Noise};
+use crate::arithmetic::Arithmetic;
+use crate::control::model::LinearModel;
+use crate::control::model::partials::MassMatrix;
+use crate::error::{Error, Range};
+use crate::math::Real;
+use crate::math::matrix::{
+    Matrix, add_outer, add_scaled, apply, check_finite, diagonal, dot, spread, symmetrize,
+    transpose,
+};
+use crate::math::sealed::Sealed as _;
+use crate::physics::{
+    Params, Pendulum, State, coulomb_friction, directions, plus_scaled, saturate, wrap,
+};
+
+/// An angle is farther than so many standard deviations from its prediction only after a push.
+const PUSH: f64 = 6.0;
+/// The variance of the torque follows the errors of about 1/0.02 = 50 measurements, of which none
+/// counts for more than so many variances.
+const FOLLOWS: [f64; 2] = [0.02, 12.0];
+/// What rounding to `f32` can add to an angle in a step: a standard deviation, rad.
+const IN_A_STEP: f64 = 1e-6;
+/// An estimated parameter differs from the given one by at most so many deviations.
+const MOST: f64 = 4.0;
+
+/// Estimates the state of a machine.
+pub type Estimator<A> = KalmanFilter<A, 0>;
+
+/// Estimates the state of a machine and its parameters.
+pub type ParameterEstimator<A> = KalmanFilter<A, PARAMETERS>;
+
+/// An extended Kalman filter for the state of a machine and `K` of its parameters: an [`Estimator`]
+/// or a [`ParameterEstimator`].
+///
+/// In each `dt` of the parameters call [`correct`](Self::correct), decide, and call
+/// [`predict`](Self::predict): [an example](crate::guide::control#a-machine-that-you-measure).
+#[derive(Clone, Debug)]
+pub struct KalmanFilter<A: Arithmetic, const K: usize> {
+    model: Pendulum<A>,
+    given: Given<A::Scalar>,
+    /// The variance of the torque, in parts of the given one.
+    torque: A::Scalar,
+    /// The covariances of the state. `None` before a measurement, and after an overflow.
+    of_state: Option<Matrix<A::Scalar>>,
+    parameters: [Parameter<A::Scalar, K>; K],
+}
+
+/// What is known of a parameter. Covariances have its given deviation as their unit.
+#[derive(Clone, Copy, Debug)]
+struct Parameter<S, const K: usize> {
+    deviation: S,
+    /// The smallest and the largest number.
+    limits: [S; 2],
+    /// The covariances with the state, and with each parameter.
+    with_state: [S; 4],
+    with_params: [S; K],
+}
+
+impl<A: Arithmetic> Estimator<A> {
+    /// An estimator of the state. The first measurement sets it.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Pendulum::new`], and a [noise](Noise) is out of its range.
+    pub fn new(params: Params<A::Scalar>, noise: Noise<A::Scalar>) -> Result<Self, Error> {
+        Self::build(params, noise, [])
+    }
+}
+
+/// The parameters that can be estimated: all that a motion tells.
+const PARAMETERS: usize = 10;
+
+/// The standard deviations of parameters, each in its unit: 0 for one that is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ParameterStd<S = f64> {
+    /// Of the mass of link 1, kg.
+    pub mass1: S,
+    /// Of the mass of link 2, kg.
+    pub mass2: S,
+    /// Of the length of link 1, m.
+    pub length1: S,
+    /// Of the moment of inertia of link 1, kg m².
+    pub inertia1: S,
+    /// Of the moment of inertia of link 2, kg m².
+    pub inertia2: S,
+    /// Of the viscous friction of joint 1, N m s/rad. This and the following ones must be 0 in an
+    /// arithmetic without friction.
+    pub friction1: S,
+    /// Of the viscous friction of joint 2, N m s/rad.
+    pub friction2: S,
+    /// Of the Coulomb friction of joint 1, N m.
+    pub coulomb1: S,
+    /// Of the Coulomb friction of joint 2, N m.
+    pub coulomb2: S,
+    /// Of the rotor, kg m².
+    pub rotor: S,
+}
+
+/// These among the numbers of the parameters.
+fn estimated<T>(numbers: [T; 21]) -> [T; PARAMETERS] {
+    let [length1, _, mass1, mass2, _, _, inertia1, inertia2, others @ ..] = numbers;
+    let [.., viscous1, viscous2, coulomb1, coulomb2, rotor] = others;
+    [mass1, mass2, length1, inertia1, inertia2, viscous1, viscous2, coulomb1, coulomb2, rotor]
+}
+
+impl<A: Arithmetic> ParameterEstimator<A> {
+    /// An estimator of the state and of the parameters that are not known.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Estimator::new`], and a standard deviation is not finite, below 0, or that of a
+    /// friction or of the rotor in an arithmetic without friction.
+    #[expect(clippy::indexing_slicing, reason = "i is below PARAMETERS")]
+    pub fn new(
+        params: Params<A::Scalar>,
+        std: ParameterStd<A::Scalar>,
+        noise: Noise<A::Scalar>,
+    ) -> Result<Self, Error> {
+        let ParameterStd { mass1, mass2, length1, inertia1, inertia2, rotor, .. } = std;
+        let ParameterStd { friction1, friction2, coulomb1, coulomb2, .. } = std;
+        let std = [
+            mass1, mass2, length1, inertia1, inertia2, friction1, friction2, coulomb1, coulomb2,
+            rotor,
+        ];
+        let given = estimated(params.numbers());
+        for (i, ((name, _), deviation)) in given.into_iter().zip(std).enumerate() {
+            let (value, unit) = (deviation.to_f64(), "its unit");
+            Range::AtLeastZero.check(name, value, unit)?;
+            if i >= 5 && !A::HAS_FRICTION && value > 0.0 {
+                let rule = "known unless the arithmetic is Damped, in";
+                return Err(Error::OutOfRange { name, value, unit, rule });
+            }
+        }
+        let zero = A::Scalar::ZERO;
+        let parameters = from_fn(|i| {
+            let ((name, given), deviation) = (given[i], std[i]);
+            let most = A::Scalar::from_f64(MOST) * deviation;
+            let is_negative = given - most < zero && name != "rotor";
+            let limits = [if is_negative { zero } else { given - most }, given + most];
+            let (with_state, with_params) = ([zero; 4], [zero; PARAMETERS]);
+            Parameter { deviation, limits, with_state, with_params }
+        });
+        Self::build(params, noise, parameters)
+    }
+}
+
+impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
+    fn build(
+        params: Params<A::Scalar>,
+        noise: Noise<A::Scalar>,
+        parameters: [Parameter<A::Scalar, K>; K],
+    ) -> Result<Self, Error> {
+        let model = Pendulum::new(params, State::HANGING)?;
+        let given = Given::new(model.params(), noise)?;
+        Ok(Self { model, given, torque: given.limits[1], of_state: None, parameters })
+    }
+
+    /// The estimated state.
+    #[must_use]
+    pub fn state(&self) -> State<A::Scalar> {
+        self.model.state()
+    }
+
+    /// The estimated parameters.
+    #[must_use]
+    pub fn params(&self) -> &Params<A::Scalar> {
+        self.model.params()
+    }
+
+    /// The standard deviations of the state, rad and rad/s. `None` before a measurement, and after
+    /// an error of [`predict`](Self::predict).
+    #[must_use]
+    pub fn state_std(&self) -> Option<[A::Scalar; 4]> {
+        let root = |x| if x > A::Scalar::ZERO { A::Scalar::sqrt(x) } else { A::Scalar::ZERO };
+        self.of_state.as_ref().map(|covariances| diagonal(covariances).map(root))
+    }
+
+    /// Corrects the estimate by measured angles θ1 and θ2, rad. The first ones, and those after an
+    /// overflow, are taken as they are, with velocities of 0.
+    ///
+    /// # Errors
+    ///
+    /// An angle is not finite.
+    pub fn correct(&mut self, angles: [A::Scalar; 2]) -> Result<(), Error> {
+        let measured = State::from([angles[0], angles[1], A::Scalar::ZERO, A::Scalar::ZERO]);
+        measured.validate()?;
+        let corrected = self.of_state.and_then(|of_state| self.corrected(of_state, angles));
+        self.of_state = corrected.or_else(|| self.begin(measured));
+        Ok(())
+    }
+
+    /// Begins with a state and the given deviations.
+    #[expect(clippy::indexing_slicing, reason = "i is below K")]
+    fn begin(&mut self, state: State<A::Scalar>) -> Option<Matrix<A::Scalar>> {
+        for (i, parameter) in self.parameters.iter_mut().enumerate() {
+            parameter.with_state = [A::Scalar::ZERO; 4];
+            parameter.with_params = [A::Scalar::ZERO; K];
+            parameter.with_params[i] = A::Scalar::ONE;
+        }
+        let Given { of_angle, of_velocity, limits, .. } = self.given;
+        self.torque = limits[1];
+        self.model.set_state(state).ok()?;
+        Some(spread([of_angle, of_angle, of_velocity, of_velocity]))
+    }
+
+    /// The covariances after a measurement. `None` if a number overflows.
+    #[expect(clippy::indexing_slicing, reason = "i is 0 or 1")]
+    fn corrected(
+        &mut self,
+        mut of_state: Matrix<A::Scalar>,
+        angles: [A::Scalar; 2],
+    ) -> Option<Matrix<A::Scalar>> {
+        let (zero, one, number) = (A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::from_f64);
+        let Given { of_angle, limits, .. } = self.given;
+        let mut y: [A::Scalar; 4] = self.model.state().into();
+        let mut params = *self.model.params();
+        angles.into_iter().enumerate().for_each(|(i, angle)| {
+            let error = wrap(angle - y[i]);
+            let square = error * error;
+            // The variance of the torque follows the errors.
+            let ratio = square / (of_state[i][i] + of_angle);
+            let [rate, most] = FOLLOWS.map(number);
+            let change = rate * (saturate(ratio, most) - one);
+            self.torque = within(self.torque + self.torque * change, limits);
+            if ratio > number(PUSH * PUSH) {
+                // The velocities are in doubt by as much as the error needs in one step.
+                let of_velocity = square / (params.dt * params.dt);
+                let [of_angle1, of_angle2, ..] =
+                    diagonal(&of_state).map(|x| if x > square { x } else { square });
+                of_state = spread([of_angle1, of_angle2, of_velocity, of_velocity]);
+                self.parameters.iter_mut().for_each(|x| x.with_state = [zero; 4]);
+            }
+
+            let with_angle = of_state[i];
+            let inverse = one / (with_angle[i] + of_angle);
+            let gain = with_angle.map(|x| x * inverse);
+            add_scaled(&mut y, error, &gain);
+            add_outer(&mut of_state, -one, &with_angle, &gain);
+            of_state[i][i] = with_angle[i] * of_angle * inverse; // the same, without cancellation
+            let with_angle = self.parameters.map(|parameter| parameter.with_state[i]);
+            let places = estimated(params.numbers_mut()).into_iter().zip(with_angle);
+            for (parameter, (place, x)) in self.parameters.iter_mut().zip(places) {
+                add_scaled(&mut parameter.with_state, -x, &gain);
+                let part = x * inverse;
+                for (covariance, x) in parameter.with_params.iter_mut().zip(with_angle) {
+                    *covariance = *covariance - part * x;
+                }
+                *place = within(*place + parameter.deviation * (part * error), parameter.limits);
+            }
+        });
+        if K > 0 {
+            // Parameters that no machine has change nothing.
+            let _ = self.model.set_params(params);
+        }
+        self.model.set_state(y.into()).ok()?;
+        check_finite("", of_state.as_flattened()).is_ok().then_some(of_state)
+    }
+
+    /// Takes a step of `dt` with a torque, N m. Before a measurement it does nothing.
+    ///
+    /// # Errors
+    ///
+    /// The torque is not finite. Or a derivative or a covariance overflows, or a joint turns by
+    /// more than half a turn in the step, so that its angles do not tell its velocity: then the
+    /// next measurement begins again.
+    pub fn predict(&mut self, torque: A::Scalar) -> Result<(), Error> {
+        let mut next = self.model.clone();
+        next.step(torque)?;
+        if let Some(of_state) = self.of_state.take() {
+            let State { dtheta1, dtheta2, .. } = next.state();
+            for (name, velocity) in [("dtheta1", dtheta1), ("dtheta2", dtheta2)] {
+                if velocity.abs() * self.model.params().dt > A::Scalar::PI {
+                    let rule = "at most half a turn in a step, in";
+                    let (value, unit) = (velocity.to_f64(), "rad/s");
+                    return Err(Error::OutOfRange { name, value, unit, rule });
+                }
+            }
+            let of_state = self.predicted(of_state, next.state(), torque)?;
+            (self.model, self.of_state) = (next, Some(of_state));
+        }
+        Ok(())
+    }
+
+    /// The covariances after a step to the state `next`.
+    #[expect(clippy::indexing_slicing, reason = "i is below K or 4")]
+    fn predicted(
+        &mut self,
+        mut of_state: Matrix<A::Scalar>,
+        next: State<A::Scalar>,
+        torque: A::Scalar,
+    ) -> Result<Matrix<A::Scalar>, Error> {
+        let [zero, one, half] = [A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::HALF];
+        let mut middle = self.model.clone();
+        let [theta1, theta2, before1, before2]: [A::Scalar; 4] = middle.state().into();
+        let [_, _, after1, after2]: [A::Scalar; 4] = next.into();
+        let [v1, v2] = [(before1 + after1) * half, (before2 + after2) * half];
+        let (dt, half_dt) = (middle.params().dt, middle.model().constants.half_dt);
+        middle.set_state([theta1 + half_dt * v1, theta2 + half_dt * v2, v1, v2].into())?;
+        // What a rate in the middle of the step changes until its end, to the second order in dt.
+        let LinearModel { a, b } = middle.linearize(torque)?;
+        let mut lasting = a.map(|row| row.map(|x| dt * (half_dt * x)));
+        add_diagonal(&mut lasting, [dt; 4]);
+        let mut after = by_transposed(&lasting, &transpose(&a));
+        add_diagonal(&mut after, [one; 4]);
+        let slopes = self.slopes(&middle, [(after1 - before1) / dt, (after2 - before2) / dt]);
+        let slopes = slopes.map(|[x1, x2]| apply(&lasting, &[zero, zero, x1, x2]));
+
+        of_state = by_transposed(&by_transposed(&after, &of_state), &after);
+        for (i, (parameter, slope)) in self.parameters.iter_mut().zip(&slopes).enumerate() {
+            let moved = apply(&after, &parameter.with_state);
+            let mut change = [zero; 4];
+            for (slope, x) in slopes.iter().zip(parameter.with_params) {
+                change = plus_scaled(change, x, *slope);
+            }
+            parameter.with_state = plus_scaled(moved, one, change);
+            // Its transpose follows when the matrix becomes symmetric.
+            add_outer(&mut of_state, one + one, slope, &plus_scaled(moved, half, change));
+            parameter.with_params[i] = parameter.with_params[i] + self.given.in_parameter;
+        }
+        let b = apply(&lasting, &b).map(|x| x * self.given.torque);
+        add_outer(&mut of_state, self.torque, &b, &b);
+        symmetrize(&mut of_state);
+        check_finite("covariances", of_state.as_flattened())?;
+        let (angle, velocity) =
+            (A::Scalar::from_f64(IN_A_STEP * IN_A_STEP), self.given.in_velocity);
+        // At opt-level z a `for` loop would keep a check of the index, here and in `corrected`.
+        [angle, angle, velocity, velocity].into_iter().enumerate().for_each(|(i, noise)| {
+            // Rounding may have made it negative.
+            let own = if of_state[i][i] > zero { of_state[i][i] } else { zero };
+            of_state[i][i] = own + noise;
+        });
+        Ok(of_state)
+    }
+
+    /// The derivatives of the accelerations \[a1, a2\] of a motion by each parameter, times its
+    /// deviation: M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
+    fn slopes(&self, motion: &Pendulum<A>, [a1, a2]: [A::Scalar; 2]) -> [[A::Scalar; 2]; K] {
+        let (o, one) = (A::Scalar::ZERO, A::Scalar::ONE);
+        let mut slopes = [[o; 2]; K];
+        if K == 0 {
+            return slopes;
+        }
+        let (model, sines) = (motion.model(), motion.sin_cos());
+        let State { dtheta1: v1, dtheta2: v2, .. } = motion.state();
+        let (params, nips) = (&model.params, model.constants.nips);
+        let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
+        let [_, (sin2, cos2)] = sines;
+        let [weight1, weight2] = directions(sines).map(|(sin, _)| params.gravity * sin);
+        let [coulomb1, coulomb2] = [v1, v2].map(|v| coulomb_friction::<A, A::Scalar>(model, v).0);
+        let (square, sum) = (v1 * v1, v1 + v2);
+        // Of l1 lc2 m2: what the links do to each other.
+        let on_link1 = sin2 * (sum * sum - nips * square) - cos2 * (a1 + a2);
+        let on_link2 = -(sin2 * ((one - nips) * square)) - cos2 * a1;
+        let of_tip = lc2 * on_link1 - weight1 - l1 * a1;
+        let forces: [[A::Scalar; 2]; PARAMETERS] = [
+            [-(lc1 * (weight1 + lc1 * a1)), o],
+            [l1 * of_tip, lc2 * (l1 * on_link2 - weight2 - lc2 * (a1 + a2))],
+            [params.mass2 * (of_tip - l1 * a1), params.mass2 * lc2 * on_link2],
+            [-a1, o],
+            [o, -(a1 + a2)],
+            [-v1, o],
+            [v2, -v2],
+            [-coulomb1, o],
+            [coulomb2, -coulomb2],
+            [a1 + a2, a1],
+        ];
+        let mass = MassMatrix::new::<A>(model, (sin2, cos2));
+        for ((slope, forces), parameter) in slopes.iter_mut().zip(forces).zip(&self.parameters) {
+            *slope = mass.solve(forces).map(|x| x * parameter.deviation);
+        }
+        slopes
+    }
+}
+
+#[expect(clippy::indexing_slicing, reason = "i is below 4")]
+fn add_diagonal<S: Real>(m: &mut Matrix<S>, diagonal: [S; 4]) {
+    diagonal.into_iter().enumerate().for_each(|(i, x)| m[i][i] = m[i][i] + x);
+}
+
+/// x yᵀ.
+#[inline(never)] // saves flash
+fn by_transposed<S: Real>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
+    x.map(|row| y.map(|column| dot(row, column)))
+}
+
+fn within<S: Real>(x: S, [least, most]: [S; 2]) -> S {
+    let x = if x < least { least } else { x };
+    if x > most { most } else { x }
+}

@@ -1,0 +1,105 @@
+//! Identifies the parameters of a machine from recorded angles and torques: of many ways to find
+//! velocities the one that predicts best.
+
+use super::regression::{Fit, Regression, Sample, motion};
+use crate::arithmetic::{Damped, Portable};
+use crate::error::Error;
+use crate::math::Real;
+use crate::physics::{Params, Pendulum, State, wrap};
+
+// Times, in T = √(l / g), where l is the distance of the second centre of mass from the fixed joint
+// while the elbow is straight. Masses and inertias are not known yet. For RealAIGym's machine these
+// are 0.2, 0.3, 0.5 and 0.8 s.
+/// The windows that are tried.
+const WINDOWS: [f64; 3] = [0.93, 1.4, 2.32];
+/// Half of the parabolas that are tried: at least so many samples, and so long.
+const HALVES: [(usize, f64); 4] = [(1, 0.01), (2, 0.02), (3, 0.03), (5, 0.05)];
+/// How far the rest of a recording is predicted.
+const AHEAD: f64 = 3.715;
+/// Half of the parabola of a first state.
+const FIRST: (usize, f64) = (3, 0.03);
+
+/// Identifies a machine: its parameters, and the numbers that they follow from.
+///
+/// Each recording has a sample in each `dt` of `given`, under its gravity. Its lengths, too, should
+/// be about right: with T = √((`length1` + `center_of_mass2`) / `gravity`), many fits and windows
+/// of about T to 2.3 T are tried on the first three quarters of each recording. Those count that
+/// predict the last quarters best, 3.7 T ahead. A recording of less than 15 T has no such quarter.
+///
+/// # Errors
+///
+/// Those of [`Regression::add`] and of [`Fit::params`].
+pub fn identify(recordings: &[&[Sample]], given: Params) -> Result<(Params, Fit), Error> {
+    let fit = |part: usize, half, window| {
+        let mut regression = Regression::EMPTY;
+        for samples in recordings {
+            let samples = samples.get(..samples.len() * part / 4).unwrap_or(samples);
+            regression.add(samples, given.dt, given.gravity, half, window)?;
+        }
+        let found = regression.fit();
+        Ok::<_, Error>((found.params(given)?, found))
+    };
+    let windows = WINDOWS.map(|window| in_steps(&given, (8, window)));
+    let halves = HALVES.map(|half| in_steps(&given, half));
+    // These count where no recording is long enough for a prediction, whose error is then 0.
+    let ([.., longest], [_, short, ..]) = (windows, halves);
+    let (mut chosen, mut least) = ((short, longest), f64::INFINITY);
+    for half in halves {
+        for window in windows {
+            let Ok((params, _)) = fit(3, half, window) else { continue };
+            let mut error = 0.0;
+            for samples in recordings {
+                let last = samples.get(samples.len() * 3 / 4..).unwrap_or(samples);
+                error += prediction_error(params, last, in_steps(&given, (8, AHEAD)))?;
+            }
+            if error > 0.0 && error < least {
+                (chosen, least) = ((half, window), error);
+            }
+        }
+    }
+    let (half, window) = chosen;
+    fit(4, half, window)
+}
+
+/// A time in steps of `dt`, but no fewer than the given steps. Without gravity it is these.
+fn in_steps(params: &Params, (least, time): (usize, f64)) -> usize {
+    let unit = Real::sqrt((params.length1 + params.center_of_mass2) / params.gravity.abs());
+    match time * unit / params.dt {
+        steps if steps <= 1e6 => least.max(steps as usize),
+        _ => least,
+    }
+}
+
+/// The root of the mean square of the errors of angles, rad, if they are predicted `horizon` steps
+/// ahead, from states that follow from seven angles each, or from more at a high rate. 0 for a
+/// recording that is too short.
+///
+/// # Errors
+///
+/// Those of [`Pendulum::new`], and a recorded or a predicted number is not finite.
+pub fn prediction_error(
+    params: Params,
+    recording: &[Sample],
+    horizon: usize,
+) -> Result<f64, Error> {
+    let half = in_steps(&params, FIRST);
+    let fit = 2 * half + 1;
+    let mut pendulum = Pendulum::<Damped<Portable>>::new(params, State::HANGING)?;
+    let (mut squares, mut count) = (0.0, 0.0);
+    let windows = recording.windows(horizon.saturating_add(fit));
+    for samples in windows.step_by((horizon / 2).max(1)) {
+        let (Some(first), Some(last)) = (samples.get(..fit), samples.get(horizon..)) else { break };
+        let [[theta1, theta2], [dtheta1, dtheta2]] = motion(first, params.dt);
+        pendulum.set_state(State { theta1, theta2, dtheta1, dtheta2 })?;
+        for Sample { torques: [torque1, torque2], .. } in samples.iter().skip(half).take(horizon) {
+            pendulum.push([torque1 * params.dt, 0.0])?;
+            pendulum.step(*torque2)?;
+        }
+        let [[measured1, measured2], _] = motion(last, params.dt);
+        let State { theta1, theta2, .. } = pendulum.state();
+        let [error1, error2] = [wrap(theta1 - measured1), wrap(theta2 - measured2)];
+        squares += error1 * error1 + error2 * error2;
+        count += 2.0;
+    }
+    Ok(if count > 0.0 { Real::sqrt(squares / count) } else { 0.0 })
+}

@@ -1,0 +1,10 @@
+//! Linear models and inverse dynamics: methods of [`Pendulum`](crate::physics::Pendulum).
+
+mod inverse_dynamics;
+mod linear_model;
+pub(super) mod partials;
+pub(super) mod step_model;
+
+pub use inverse_dynamics::Forces;
+pub use linear_model::LinearModel;
+pub use step_model::StepModel;
