@@ -201,9 +201,9 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
             Error::NotInEquilibrium { rate, largest } => write!(
                 f,
                 "the state must be in equilibrium, with velocities of 0 and accelerations of at \
-                most {largest:.1e} rad/s², got {rate}"
+                most {largest} rad/s², got {rate}"
             ),
-            Error::IllConditioned { error: size } => write!(f, "{}, got {size:e}", error.message()),
+            Error::IllConditioned { error: size } => write!(f, "{}, got {size}", error.message()),
             Error::NoPlan { tries } => write!(f, "{} in {tries} tries", error.message()),
             #[cfg(feature = "std")]
             Error::MalformedSeed { found, position } => {

@@ -11,6 +11,7 @@ use common::twins::LEVELS;
 
 use crate::cast;
 use crate::recovery::holds;
+use crate::regulators::diagonal;
 
 /// Plans from hanging with three quarters of a torque, N m, and follows the plan from a nearby
 /// state.
@@ -351,12 +352,15 @@ fn a_weight_lowers_what_it_weights() -> Result<(), Box<dyn std::error::Error>> {
         }
         Ok::<f64, Box<dyn std::error::Error>>(sum)
     };
-    let cases: [(Cost, Term); 7] = [
+    let cases: [(Cost, Term); 8] = [
         (Cost { torque: 1.0, ..plain }, |k, _| k.torque.powi(2)),
         (Cost { torque_change: 1.0, ..plain }, |k, before| (k.torque - before.torque).powi(2)),
         (Cost { power: 1.0, ..plain }, |k, _| (k.torque * k.state.dtheta2).abs()),
-        (Cost { velocities: [1.0, 0.0], ..plain }, |k, _| k.state.dtheta1.powi(2)),
-        (Cost { velocities: [0.0, 1.0], ..plain }, |k, _| k.state.dtheta2.powi(2)),
+        (Cost { q: diagonal([0.0, 0.0, 1.0, 0.0]), ..plain }, |k, _| k.state.dtheta1.powi(2)),
+        (Cost { q: diagonal([0.0, 0.0, 0.0, 1.0]), ..plain }, |k, _| k.state.dtheta2.powi(2)),
+        (Cost { q: diagonal([100.0, 0.0, 0.0, 0.0]), ..plain }, |k, _| {
+            k.state.deviation_from(State::UPRIGHT)[0].powi(2)
+        }),
         (Cost { angles: [100.0, 0.0], ..plain }, |k, _| 2.0 + 2.0 * libm::cos(k.state.theta1)),
         (Cost { angles: [0.0, 100.0], ..plain }, |k, _| 2.0 - 2.0 * libm::cos(k.state.theta2)),
     ];

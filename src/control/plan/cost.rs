@@ -23,8 +23,6 @@ pub struct Cost<S = f64> {
     pub qf: [[S; 4]; 4],
     /// Of 2 − 2 cos x, for the deviation x of each angle from the target: x² where it is small. 1/s.
     pub angles: [S; 2],
-    /// Of θ̇1² and θ̇2², s/rad².
-    pub velocities: [S; 2],
     /// R: of the square of the torque's difference from that which holds the target, 1/((N m)² s).
     pub torque: S,
     /// Of the square of the torque's change from one step to the next, 1/(N m)².
@@ -75,7 +73,6 @@ impl<S: Modeled> Cost<S> {
             q: [[S::ZERO; 4]; 4],
             qf: [[S::ZERO; 4]; 4],
             angles: [S::ZERO; 2],
-            velocities: [S::ZERO; 2],
             torque: S::from_f64(TORQUE / (time * torque * torque)),
             torque_change: S::ZERO,
             power: S::ZERO,
@@ -90,12 +87,10 @@ impl<S: Modeled> Cost<S> {
 impl<S: Real> Cost<S> {
     /// Checks that all weights are finite and at least 0, and that the margin is above 0.
     pub(super) fn check(&self) -> Result<(), Error> {
-        let ([angle1, angle2], [velocity1, velocity2]) = (self.angles, self.velocities);
+        let [angle1, angle2] = self.angles;
         for &(name, weight, unit) in &[
             ("angles", angle1, "per s"),
             ("angles", angle2, "per s"),
-            ("velocities", velocity1, "s/rad²"),
-            ("velocities", velocity2, "s/rad²"),
             ("torque", self.torque, "per (N m)² s"),
             ("torque_change", self.torque_change, "per (N m)²"),
             ("power", self.power, "per J"),
@@ -104,8 +99,9 @@ impl<S: Real> Cost<S> {
         ] {
             Range::AtLeastZero.check(name, weight.to_f64(), unit)?;
         }
-        check_weights("q", &self.q)?;
-        check_weights("qf", &self.qf)?;
+        for (name, q) in [("q", &self.q), ("qf", &self.qf)] {
+            check_weights(name, &mut q.map(|row| row.map(S::to_f64)), S::EPSILON.to_f64())?;
+        }
         Range::Finite.check("height", self.height.to_f64(), "m")?;
         Range::AboveZero.check("margin", self.margin.to_f64(), "m")
     }
@@ -120,6 +116,8 @@ pub(super) struct Weights<S> {
     target: State<S>,
     sin_cos: [SinCos<S>; 2],
     held: S,
+    /// Whether `q` or `angles` is not 0. Most plans do without.
+    pub(super) weights_state: bool,
     /// Velocities that no plan may reach, rad/s, and what exceeding them costs, s²/rad².
     pub(super) bounds: [S; 2],
     beyond: S,
@@ -138,12 +136,10 @@ impl<S: Real> Weights<S> {
     ) -> Self {
         let BoundedRegulator { machine, feedback, bounds, .. } = regulator;
         let dt = machine.params().dt;
-        let times = |[x, y]: [S; 2]| [x * dt, y * dt];
         scale(&mut cost.q, dt + dt);
         scale(&mut cost.qf, S::from_f64(2.0));
         let cost = Cost {
-            angles: times(cost.angles),
-            velocities: times(cost.velocities),
+            angles: cost.angles.map(|x| x * dt),
             torque: cost.torque * dt,
             power: cost.power * dt,
             below: cost.below * dt,
@@ -157,30 +153,13 @@ impl<S: Real> Weights<S> {
             target: feedback.target,
             sin_cos: machine.sin_cos(),
             held: feedback.torque,
+            weights_state: cost.q.as_flattened().iter().chain(&cost.angles).any(|x| *x != S::ZERO),
             bounds: *bounds,
             beyond: dt * S::from_f64(BEYOND * time),
             smooth: S::from_f64(SMOOTH * torque / time),
             damping: if cost.torque > damping { cost.torque } else { damping },
             least: S::from_f64(LEAST * curvature),
         }
-    }
-
-    /// The deviation from the target.
-    #[inline(always)]
-    fn deviation(&self, [theta1, theta2, dtheta1, dtheta2]: [S; 4]) -> [S; 4] {
-        let target = &self.target;
-        [wrap(theta1 - target.theta1), wrap(theta2 - target.theta2), dtheta1, dtheta2]
-    }
-
-    /// The sines and cosines of the deviations.
-    #[inline(always)]
-    fn turned(&self, sin_cos: [SinCos<S>; 2]) -> [SinCos<S>; 2] {
-        let [(s1, c1), (s2, c2)] = self.sin_cos;
-        let [(sin1, cos1), (sin2, cos2)] = sin_cos;
-        [
-            (sin1 * c1 - cos1 * s1, cos1 * c1 + sin1 * s1),
-            (sin2 * c2 - cos2 * s2, cos2 * c2 + sin2 * s2),
-        ]
     }
 
     /// What a step costs, without the change of the torque.
@@ -193,29 +172,27 @@ impl<S: Real> Weights<S> {
         torque: S,
     ) -> S {
         let [_, _, dtheta1, dtheta2] = y;
-        let [(_, cos1), (_, cos2)] = self.turned(sin_cos);
-        let x = self.deviation(y);
         let cost = &self.cost;
         let apart = torque - self.held;
-        let [angle1, angle2] = cost.angles;
-        let [velocity1, velocity2] = cost.velocities;
         let [bound1, bound2] = self.bounds;
-        let two = S::from_f64(2.0);
         let power = dtheta2 * torque;
         let [_, [_, height]] = positions(params, sin_cos);
         let depth = at_least_zero((cost.height - height) / cost.margin);
         let square = depth * depth;
         let beyond1 = at_least_zero(dtheta1.abs() - bound1);
         let beyond2 = at_least_zero(dtheta2.abs() - bound2);
-        S::HALF * dot(cost.q.map(|row| dot(row, x)), x)
-            + angle1 * (two - two * cos1)
-            + angle2 * (two - two * cos2)
-            + velocity1 * (dtheta1 * dtheta1)
-            + velocity2 * (dtheta2 * dtheta2)
-            + cost.torque * (apart * apart)
+        let sum = cost.torque * (apart * apart)
             + cost.power * (power * power / (power.abs() + self.smooth))
             + cost.below * (square / (S::ONE + square))
-            + self.beyond * (beyond1 * beyond1 + beyond2 * beyond2)
+            + self.beyond * (beyond1 * beyond1 + beyond2 * beyond2);
+        if !self.weights_state {
+            return sum;
+        }
+        let ([angle1, angle2], two) = (cost.angles, S::from_f64(2.0));
+        let (x, [(_, cos1), (_, cos2)]) = self.deviation(y, sin_cos);
+        sum + S::HALF * dot(cost.q.map(|row| dot(row, x)), x)
+            + angle1 * (two - two * cos1)
+            + angle2 * (two - two * cos2)
     }
 
     /// The slopes of [`step`](Self::step) and its curvatures, where they are not negative: by the
@@ -230,11 +207,6 @@ impl<S: Real> Weights<S> {
     ) -> ([[S; 2]; 4], [S; 2]) {
         let [_, _, dtheta1, dtheta2] = y;
         let cost = &self.cost;
-        let [(sin1, cos1), (sin2, cos2)] = self.turned(sin_cos);
-        let x = self.deviation(y);
-        let [q1, q2, q3, q4] = cost.q.map(|row| dot(row, x));
-        let [[angle1, angle2], [velocity1, velocity2]] =
-            [cost.angles, cost.velocities].map(|[x, y]| [x + x, y + y]);
         let [bound1, bound2] = self.bounds;
 
         let power = dtheta2 * torque;
@@ -255,18 +227,41 @@ impl<S: Real> Weights<S> {
         };
         let [slope1, curvature1] = bounded(dtheta1, bound1);
         let [slope2, curvature2] = bounded(dtheta2, bound2);
-        let by_state = [
-            [by_height * tip + angle1 * sin1 + q1, angle1 * at_least_zero(cos1)],
-            [by_height * (tip - elbow) + angle2 * sin2 + q2, angle2 * at_least_zero(cos2)],
-            [velocity1 * dtheta1 + slope1 + q3, velocity1 + curvature1],
-            [
-                velocity2 * dtheta2 + slope2 + by_power * torque + q4,
-                velocity2 + curvature2 + weight * (torque * torque),
-            ],
+        let mut by_state = [
+            [by_height * tip, S::ZERO],
+            [by_height * (tip - elbow), S::ZERO],
+            [slope1, curvature1],
+            [slope2 + by_power * torque, curvature2 + weight * (torque * torque)],
         ];
+        if self.weights_state {
+            let [angle1, angle2] = cost.angles.map(|x| x + x);
+            let (x, [(sin1, cos1), (sin2, cos2)]) = self.deviation(y, sin_cos);
+            let turned = [
+                [angle1 * sin1, angle1 * at_least_zero(cos1)],
+                [angle2 * sin2, angle2 * at_least_zero(cos2)],
+                [S::ZERO; 2],
+                [S::ZERO; 2],
+            ];
+            for ((own, turned), row) in by_state.iter_mut().zip(turned).zip(cost.q) {
+                *own = [own[0] + turned[0] + dot(row, x), own[1] + turned[1]];
+            }
+        }
         let torque_slope = (cost.torque + cost.torque) * (torque - self.held) + by_power * dtheta2;
         let torque_curvature = cost.torque + cost.torque + weight * (dtheta2 * dtheta2);
         (by_state, [torque_slope, torque_curvature])
+    }
+
+    /// The deviation from the target, and the sines and cosines of its angles.
+    #[inline(always)]
+    fn deviation(&self, y: [S; 4], sin_cos: [SinCos<S>; 2]) -> ([S; 4], [SinCos<S>; 2]) {
+        let ([theta1, theta2, dtheta1, dtheta2], target) = (y, &self.target);
+        let ([(s1, c1), (s2, c2)], [(sin1, cos1), (sin2, cos2)]) = (self.sin_cos, sin_cos);
+        let x = [wrap(theta1 - target.theta1), wrap(theta2 - target.theta2), dtheta1, dtheta2];
+        let turned = [
+            (sin1 * c1 - cos1 * s1, cos1 * c1 + sin1 * s1),
+            (sin2 * c2 - cos2 * s2, cos2 * c2 + sin2 * s2),
+        ];
+        (x, turned)
     }
 
     /// What the state after a plan costs.

@@ -218,7 +218,6 @@ fn look_back<A: Arithmetic, const IN_LANES: bool>(
     let (slope, both) = ([s1, s2, s3, s4], [both1, both2, both3, both4]);
     let rows =
         [[p11, p12, p13, p14], [p12, p22, p23, p24], [p13, p23, p33, p34], [p14, p24, p34, p44]];
-    let [[c11, c12, c13, c14], [_, c22, c23, c24], [_, _, c33, c34], [.., c44]] = weights.cost.q;
     let apply = |x| [dot(rows[0], x), dot(rows[1], x), dot(rows[2], x), dot(rows[3], x)];
 
     // The curvature and the slope of what the jump costs.
@@ -250,21 +249,21 @@ fn look_back<A: Arithmetic, const IN_LANES: bool>(
     let [s1, s2, s3, s4] = plus_scaled(slope, change, by_both);
     let both = by_both.map(|x| x * smooth);
     let [both1, both2, both3, both4] = plus_scaled(both, by_torque2 * smooth - pull, gain);
-    let to_go = [
+    let mut to_go = [
         s1,
         s2,
         s3,
         s4,
-        dot(a1, q1) + by(0, 0) + by_state[0][1] + c11,
-        dot(a1, q2) + by(0, 1) + c12,
-        dot(a1, q3) + by(0, 2) + c13,
-        dot(a1, q4) + by(0, 3) + c14,
-        dot(a2, q2) + by(1, 1) + by_state[1][1] + c22,
-        dot(a2, q3) + by(1, 2) + c23,
-        dot(a2, q4) + by(1, 3) + c24,
-        dot(a3, q3) + by(2, 2) + by_state[2][1] + c33,
-        dot(a3, q4) + by(2, 3) + c34,
-        dot(a4, q4) + by(3, 3) + by_state[3][1] + c44,
+        dot(a1, q1) + by(0, 0) + by_state[0][1],
+        dot(a1, q2) + by(0, 1),
+        dot(a1, q3) + by(0, 2),
+        dot(a1, q4) + by(0, 3),
+        dot(a2, q2) + by(1, 1) + by_state[1][1],
+        dot(a2, q3) + by(1, 2),
+        dot(a2, q4) + by(1, 3),
+        dot(a3, q3) + by(2, 2) + by_state[2][1],
+        dot(a3, q4) + by(2, 3),
+        dot(a4, q4) + by(3, 3) + by_state[3][1],
         both1,
         both2,
         both3,
@@ -272,6 +271,11 @@ fn look_back<A: Arithmetic, const IN_LANES: bool>(
         smooth * rest - (pull * change + by_jump),
         pull + smooth * (by_torque2 * smooth - (pull + pull)),
     ];
+    if weights.weights_state {
+        let [q1, q2, q3, q4] = &weights.cost.q;
+        let upper = q1.iter().chain(&q2[1..]).chain(&q3[2..]).chain(&q4[3..]);
+        to_go[4..].iter_mut().zip(upper).for_each(|(place, q)| *place = *place + *q);
+    }
     (Knot { change, gain: by_both.map(|x| x * free), smooth, ..*knot }, to_go, divisor)
 }
 

@@ -90,6 +90,7 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// [`Error::NoPlan`] after so many tries, and [`Error::OutOfRange`] if a number of the state is
     /// not finite.
+    #[expect(clippy::type_complexity)]
     pub fn plan_into<'m, R: Rng + ?Sized>(
         &mut self,
         start: State<A::Scalar>,

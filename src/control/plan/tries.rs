@@ -45,6 +45,7 @@ pub(super) struct Try<S> {
 }
 
 /// A plan that is done.
+#[cfg_attr(not(feature = "alloc"), expect(dead_code, reason = "plans side by side read all"))]
 pub(super) struct Done<'a, S, V> {
     /// How many plans began before it, and the least of this number of those that are not done.
     pub(super) index: usize,

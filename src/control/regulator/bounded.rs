@@ -103,11 +103,11 @@ impl<A: Arithmetic> BoundedRegulator<A> {
         let bounds = bounds.map(|bound| replace(bound, infinity));
         let machine = Pendulum::<A>::new(params, target)?;
         let spare = limit - torque.abs();
-        if !(spare > A::Scalar::ZERO) {
-            let rule = "below the largest in size, in";
-            let value = torque.to_f64();
-            return Err(Error::OutOfRange { name: "torque", value, unit: "N m", rule });
-        }
+        Range::AboveZero.check(
+            "the largest torque without that of the target",
+            spare.to_f64(),
+            "N m",
+        )?;
         check_equilibrium(&machine, torque)?;
         let units = Units::new(&params, spare);
         let none = Joints { joint1: A::Scalar::ZERO, joint2: A::Scalar::ZERO };

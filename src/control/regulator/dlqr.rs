@@ -60,11 +60,11 @@ impl<S: Real> Lqr<S> {
 /// [`Error::OutOfRange`] for an `r` that is not above 0; `NotFinite`, `NotSymmetric`,
 /// `NotSemidefinite`, `NotStabilizable`, `NotDetectable` and `IllConditioned`.
 pub fn dlqr<S: Real>(model: &StepModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, Error> {
-    let a = model.a.map(|row| row.map(S::to_f64));
+    let [a, mut q] = [&model.a, q].map(|m| m.map(|row| row.map(S::to_f64)));
     let (b, r) = (model.b.map(S::to_f64), r.to_f64());
-    check_finite("a", a.as_flattened())?;
-    check_finite("b", &b)?;
-    let q = check_weights("q", q)?;
+    check_finite_f64("a", a.as_flattened())?;
+    check_finite_f64("b", &b)?;
+    check_weights("q", &mut q, S::EPSILON.to_f64())?;
     Range::AboveZero.check("r", r, "per (N m)²")?;
 
     let problem = Problem { a, b, q, r };
@@ -80,43 +80,43 @@ pub fn dlqr<S: Real>(model: &StepModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<
     Ok(regulator)
 }
 
-/// The weights, symmetric to the last digit: products such as G W Gᵀ are so only up to rounding.
+/// Checks weights, and makes them symmetric to the last digit: products such as G W Gᵀ are so only
+/// up to rounding. `epsilon` is that of the scalar in which they were given.
 #[inline(never)] // saves flash
-pub(in crate::control) fn check_weights<S: Real>(
+pub(in crate::control) fn check_weights(
     name: &'static str,
-    q: &Matrix<S>,
-) -> Result<Matrix, Error> {
-    let q = q.map(|row| row.map(S::to_f64));
-    check_finite(name, q.as_flattened())?;
-    let rounding = 16.0 * S::EPSILON.to_f64() * largest(q.as_flattened());
-    let q = symmetric(name, &q, rounding)?;
-    check_semidefinite(name, &q, rounding)?;
-    Ok(q)
+    q: &mut Matrix,
+    epsilon: f64,
+) -> Result<(), Error> {
+    check_finite_f64(name, q.as_flattened())?;
+    let rounding = 16.0 * epsilon * largest(q.as_flattened());
+    for (row, column) in q.iter().zip(&transpose(q)) {
+        check_symmetric(name, row, column, rounding)?;
+    }
+    scale(q, 0.5); // before the sum, which would overflow
+    let transposed = transpose(q);
+    add(q, 1.0, &transposed);
+    check_semidefinite(name, q, rounding)
 }
 
-fn symmetric(name: &'static str, q: &Matrix, rounding: f64) -> Result<Matrix, Error> {
-    #[inline(never)] // saves flash
-    fn check(
-        name: &'static str,
-        row: &[f64; 4],
-        column: &[f64; 4],
-        rounding: f64,
-    ) -> Result<(), Error> {
-        for (&upper, &lower) in row.iter().zip(column) {
-            if (upper - lower).abs() > rounding {
-                return Err(Error::NotSymmetric { name, upper, lower });
-            }
-        }
-        Ok(())
-    }
+#[inline(never)] // saves flash
+fn check_finite_f64(name: &'static str, elements: &[f64]) -> Result<(), Error> {
+    check_finite(name, elements)
+}
 
-    let mut transposed = transpose(q);
-    for (row, column) in q.iter().zip(&transposed) {
-        check(name, row, column, rounding)?;
+#[inline(never)] // saves flash
+fn check_symmetric(
+    name: &'static str,
+    row: &[f64; 4],
+    column: &[f64; 4],
+    rounding: f64,
+) -> Result<(), Error> {
+    for (&upper, &lower) in row.iter().zip(column) {
+        if (upper - lower).abs() > rounding {
+            return Err(Error::NotSymmetric { name, upper, lower });
+        }
     }
-    scale(&mut transposed, 0.5); // before the sum, which would overflow
-    add(&mut transposed, 0.5, q);
-    Ok(transposed)
+    Ok(())
 }
 
 /// Subtracts (column columnᵀ) / pivot for the largest pivot on the diagonal, until none is above

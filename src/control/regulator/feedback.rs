@@ -37,7 +37,8 @@ impl<S: Real> Feedback<S> {
     /// The torque for a deviation, N m.
     #[inline(never)] // saves flash
     pub(in crate::control) fn torque_of(&self, x: [S; 4]) -> S {
-        let region = match self.resting.square(x) < self.reach {
+        let has_rest = self.reach > S::ZERO; // squares cost time
+        let region = match has_rest && self.resting.square(x) < self.reach {
             true => &self.resting,
             false => &self.moving,
         };

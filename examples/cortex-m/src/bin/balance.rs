@@ -10,9 +10,9 @@
 #![no_std]
 #![no_main]
 
-use acrobot::control::plan::{Knot, Planner};
+use acrobot::control::plan::{Knot, SwingUp};
 use acrobot::physics::saturate;
-use acrobot::{Error, Acrobot, Fast, Params, State};
+use acrobot::{Acrobot, Error, Fast, Params, State};
 use acrobot_cortex_m::ram;
 use bits::plan;
 use cortex_m::Peripherals;
@@ -93,7 +93,7 @@ fn make_plan(motor: Motor, memory: &mut plan::Memory) -> &[Knot<f32>] {
         TIMER.add(1).write_volatile(u32::MAX);
         TIMER.write_volatile(1);
     }
-    let plan = plan::plan(motor.planned, motor.rate, memory).map_or(&[][..], |plan| plan);
+    let plan = plan::plan(motor.planned, motor.rate, memory).map_or(&[][..], |plan| plan.knots);
     // SAFETY: as above.
     let counts = u32::MAX - unsafe { TIMER.add(1).read_volatile() };
     println!("{} plan_s {}", motor.name, (plan.len() as u32).div_ceil(motor.rate));
@@ -112,12 +112,12 @@ fn run(
 ) -> Result<u32, Error> {
     let rate = motor.rate;
     let params = Params { torque_noise: DISTURBANCE, ..plan::params(rate) };
-    let planner = Planner::new(params, motor.limit)?;
+    let swing_up = SwingUp::new(params, motor.limit)?;
     let (mut uncaught, mut ticks, mut caught, mut longest) = (0, 0, 0, 0);
     let (mut error, mut counts, mut slowest) = (0_f32, 0, 0);
     for seed in 0..episodes {
         let machine = Acrobot::with_params(seed.into(), params)?;
-        let episode = play(machine, planner.clone(), motor, plan, in_time)?;
+        let episode = play(machine, swing_up.clone(), motor, plan, in_time)?;
         ticks += episode.ticks;
         counts += episode.counts;
         slowest = slowest.max(episode.slowest);
@@ -145,7 +145,7 @@ fn run(
 
 fn play(
     mut machine: Acrobot<Fast>,
-    mut planner: Planner<Fast>,
+    mut swing_up: SwingUp<Fast>,
     motor: Motor,
     plan: &[Knot<f32>],
     in_time: bool,
@@ -160,7 +160,7 @@ fn play(
         let state = machine.state();
         let torque = match plan.get(episode.ticks as usize) {
             Some(step) => saturate(step.follow(state), motor.limit),
-            None => planner.decide(state)?,
+            None => swing_up.torque(state)?,
         };
         // The counter counts down, and begins again from the period.
         let took = (before + PERIOD - SYST::get_current()) % PERIOD;

@@ -6,11 +6,11 @@
 use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real, Reference};
-use acrobot::control::estimate::{Estimator, Noise};
-use acrobot::control::regulator::{dlqr};
+use acrobot::control::estimate::{Estimator, Noise, ParameterEstimator, ParameterStd};
+use acrobot::control::regulator::dlqr;
 use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Theme};
-use acrobot::{Error, Acrobot, Action, Fast, Params, State};
+use acrobot::{Acrobot, Action, Error, Fast, Params, State};
 use acrobot_cortex_m::counter::Counter;
 use bits::oled::{self, Display};
 use cortex_m_rt::entry;
@@ -70,7 +70,7 @@ fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Error
     print("linearize_step", &mut || {
         let _ = black_box(black_box(&pendulum).linearize_step(zero));
     });
-    print("lqr", &mut || {
+    print("dlqr", &mut || {
         let _ = black_box(dlqr(black_box(&model), &weights, one));
     });
     print("torque", &mut || {
@@ -80,27 +80,26 @@ fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Error
     print("inverse_dynamics", &mut || {
         let _ = black_box(black_box(&pendulum).inverse_dynamics([one, one]));
     });
-    print("velocities", &mut || {
-        let _ = black_box(velocities(black_box(&pendulum)));
-    });
     Ok(())
 }
 
 /// A measurement and a step of the same machine.
 fn estimators<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Error> {
     let params = Params { dt: A::Scalar::from_f64(0.01), ..Params::default() };
-    let noise = Noise { angle: A::Scalar::from_f64(1e-3), torque: A::Scalar::from_f64(0.05) };
+    let noise =
+        Noise { angle_std: A::Scalar::from_f64(1e-3), torque_std: A::Scalar::from_f64(0.05) };
     let mut of_state = Estimator::<Damped<A>>::new(params, noise)?;
-    let mut of_params = Estimator::<Damped<A>, 10>::with_params(params, params, noise)?;
+    let std = ParameterStd { mass1: params.mass1, ..ParameterStd::default() };
+    let mut of_params = ParameterEstimator::<Damped<A>>::new(params, std, noise)?;
     let (angles, torque) = ([A::Scalar::PI, A::Scalar::ZERO], A::Scalar::ZERO);
-    of_state.measure(angles)?;
-    of_params.measure(angles)?;
+    of_state.correct(angles)?;
+    of_params.correct(angles)?;
     let count = counter.count(100, || {
-        let _ = black_box((of_state.measure(black_box(angles)), of_state.step(torque)));
+        let _ = black_box((of_state.correct(black_box(angles)), of_state.predict(torque)));
     });
     println!("{name} estimator {count}");
     let count = counter.count(100, || {
-        let _ = black_box((of_params.measure(black_box(angles)), of_params.step(torque)));
+        let _ = black_box((of_params.correct(black_box(angles)), of_params.predict(torque)));
     });
     println!("{name} estimator_params {count}");
     Ok(())

@@ -9,7 +9,7 @@ use core::fmt::{self, Write as _};
 use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Reference};
-use acrobot::control::regulator::{dlqr};
+use acrobot::control::regulator::dlqr;
 use acrobot::physics::Pendulum;
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable};
 use acrobot_cortex_m::{nop, stack};

@@ -13,10 +13,10 @@ use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
-use acrobot::control::estimate::{Estimator, Noise};
-use acrobot::control::identify::{Regression, Sample};
-use acrobot::control::plan::{Cost, Knot, Planner};
-use acrobot::control::regulator::{dlqr};
+use acrobot::control::estimate::{Estimator, Noise, ParameterEstimator, ParameterStd};
+use acrobot::control::identify::{Regression, Sample, identify, prediction_error};
+use acrobot::control::plan::{Knot, Planner, Problem, SwingUp};
+use acrobot::control::regulator::dlqr;
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
@@ -55,7 +55,7 @@ fn main() -> ! {
         planner::<Damped<Portable>>();
         estimator::<Damped<Fast>>();
         estimator::<Damped<Portable>>();
-        identify();
+        identification();
         policy();
     }
 }
@@ -121,7 +121,6 @@ fn control<A: Arithmetic>() {
     let _ = black_box((
         pendulum.linearize(number()),
         pendulum.inverse_dynamics([number(), number()]),
-        velocities(&pendulum),
         pendulum.regulator(number(), &weights, number()),
     ));
     let Ok(model) = pendulum.linearize_step(number()) else {
@@ -245,42 +244,46 @@ fn learners() {
 fn planner<A: Arithmetic>() {
     let mut memory = black_box([Knot::EMPTY; 20]);
     let mut rng = Pcg64::new(black_box(42));
-    let Ok(cost) = Cost::new(&params(), number()) else { return };
-    let cost = Cost { torque_change: number(), ..cost };
-    if let Ok(mut planner) = Planner::<A>::with_cost(params(), number(), cost) {
-        let _ = black_box(planner.decide(state()));
+    let Ok(mut problem) = Problem::balance(params(), number(), number()) else { return };
+    problem.cost.torque_change = number();
+    if let Ok(mut planner) = Planner::<A>::new(&problem) {
         let _ = black_box(planner.improve(state(), black_box(10), &mut memory));
-        if let Ok(plan) = planner.plan(state(), black_box(10), &mut rng, &mut memory) {
-            black_box(planner.follow(plan, black_box(3), state()));
+        if let Ok(plan) = planner.plan_into(state(), black_box(10), &mut rng, &mut memory) {
+            black_box(plan.torque(black_box(3), state()));
         }
+        black_box(planner.regulator().holds_from(state()));
+    }
+    if let Ok(mut swing_up) = SwingUp::<A>::new(params(), number()) {
+        let _ = black_box(swing_up.torque(state()));
     }
 }
 
 fn estimator<A: Arithmetic>() {
-    let noise = Noise { angle: number(), torque: number() };
+    let noise = Noise { angle_std: number(), torque_std: number() };
+    let std = ParameterStd { mass1: number(), ..ParameterStd::default() };
     let machine = params().with_inertias_about_joints([number(), number()]);
     let machine = machine.with_rotor(number(), number());
     let mut of_state = Estimator::<A>::new(machine, noise);
-    let mut of_params = Estimator::<A, 10>::with_params(machine, params(), noise);
+    let mut of_params = ParameterEstimator::<A>::new(machine, std, noise);
     for _ in 0..black_box(10) {
         if let (Ok(of_state), Ok(of_params)) = (&mut of_state, &mut of_params) {
             let angles = [number(), number()];
-            let _ = black_box((of_state.measure(angles), of_state.step(number())));
-            let _ = black_box((of_params.measure(angles), of_params.step(number())));
+            let _ = black_box((of_state.correct(angles), of_state.predict(number())));
+            let _ = black_box((of_params.correct(angles), of_params.predict(number())));
             black_box((of_state.state(), of_params.state_std(), of_params.params()));
         }
     }
 }
 
-fn identify() {
+fn identification() {
     let samples = [Sample { angles: [number(); 2], torques: [number(); 2] }; 20];
     let mut regression = Regression::EMPTY;
     let (half, window) = (black_box(1), black_box(2));
     let _ = black_box(regression.add(black_box(&samples), number(), number(), half, window));
     let _ = black_box(regression.fit().params(params()));
-    let found = control::identify(&[black_box(&samples)], params());
+    let found = identify(&[black_box(&samples)], params());
     let horizon = black_box(3);
-    let _ = black_box((found, control::prediction_error(params(), &samples, horizon)));
+    let _ = black_box((found, prediction_error(params(), &samples, horizon)));
 }
 
 /// A policy from a file that is read at run time.

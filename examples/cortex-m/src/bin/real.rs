@@ -9,6 +9,7 @@ use core::cell::RefCell;
 
 use acrobot::arithmetic::Damped;
 
+use acrobot::control::mpc::{Controller, Replanner, Settings};
 use acrobot::physics::Joints;
 use acrobot::{Error, Fast, Params};
 use acrobot_cortex_m::ram;
@@ -16,7 +17,6 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{Peripherals, SCB, SYST};
 use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
-use acrobot::control::mpc::{Controller, Replanner, Settings};
 use machine::{Machine, realaigym};
 use semihosting::{println, process};
 

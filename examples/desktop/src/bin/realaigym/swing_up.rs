@@ -3,6 +3,8 @@
 //! A planner minimizes a sum, and a score is none. So the weights of each plan are the slopes of
 //! the score at the plan before.
 
+use std::array::from_fn;
+
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::control::plan::{Cost, Knot, Plan, Planner, Problem};
 use acrobot::numpy::{Pcg64, uniform};
@@ -73,7 +75,7 @@ fn weigh(version: Version, Problem { params, cost, .. }: Problem, costs: Costs) 
     let square = 2.0 * STEPS as f64 * costs[5].max(0.002);
     Cost {
         angles: [1e-3; 2],
-        velocities: [slope(6); 2],
+        q: from_fn(|i| from_fn(|j| if i == j && i >= 2 { slope(6) } else { 0.0 })),
         torque: slope(4),
         torque_change: slope(5) / square,
         power: slope(1),
