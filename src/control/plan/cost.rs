@@ -131,20 +131,20 @@ pub(super) struct Weights<S> {
 impl<S: Real> Weights<S> {
     pub(super) fn new<A: Arithmetic<Scalar = S>>(
         regulator: &BoundedRegulator<A>,
-        mut cost: Cost<S>,
+        cost: &Cost<S>,
         units: Units,
     ) -> Self {
         let BoundedRegulator { machine, feedback, bounds, .. } = regulator;
         let dt = machine.params().dt;
-        scale(&mut cost.q, dt + dt);
-        scale(&mut cost.qf, S::from_f64(2.0));
-        let cost = Cost {
+        let mut cost = Cost {
             angles: cost.angles.map(|x| x * dt),
             torque: cost.torque * dt,
             power: cost.power * dt,
             below: cost.below * dt,
-            ..cost
+            ..*cost
         };
+        scale(&mut cost.q, dt + dt);
+        scale(&mut cost.qf, S::from_f64(2.0));
         let Units { time, torque, .. } = units;
         let curvature = dt.to_f64() / (time * torque * torque);
         let damping = S::from_f64(DAMPING * curvature);

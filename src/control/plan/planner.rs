@@ -54,12 +54,12 @@ impl<A: Arithmetic> Planner<A> {
     /// Those of [`BoundedRegulator::about`], and a weight is out of range.
     #[inline(never)] // saves flash
     pub fn new(problem: &Problem<A::Scalar>) -> Result<Self, Error> {
-        let Problem { params, limit, target, torque, cost } = *problem;
+        problem.cost.check()?;
+        let Problem { params, limit, target, torque, .. } = *problem;
         let regulator = BoundedRegulator::<A>::about(params, limit, target, torque)?;
-        cost.check()?;
-        let units = Units::new(&params, limit);
+        let units = Units::new(&problem.params, limit);
         Ok(Self {
-            weights: Weights::new(&regulator, cost, units),
+            weights: Weights::new(&regulator, &problem.cost, units),
             units,
             energy: regulator.machine.energy(),
             regulator,
