@@ -84,8 +84,8 @@ fn estimated<T>(numbers: [T; 21]) -> [T; PARAMETERS] {
 
 impl<A: Arithmetic> Estimator<A, PARAMETERS> {
     /// An estimator of the state and of the parameters `mass1`, `mass2`, `length1`, `inertia1`,
-    /// `inertia2`, `friction`, `coulomb` and `rotor`, given the standard deviation of each in its
-    /// unit; one of 0 is known. Other fields of `deviations` do not count.
+    /// `inertia2`, `damping1`, `damping2`, `coulomb1`, `coulomb2` and `rotor`, given the standard
+    /// deviation of each in its unit; one of 0 is known. Other fields of `deviations` do not count.
     ///
     /// # Errors
     ///

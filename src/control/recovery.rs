@@ -14,7 +14,7 @@ use super::units::Units;
 use crate::arithmetic::Arithmetic;
 use crate::error::{Error, Range};
 use crate::math::Real;
-use crate::physics::{Joints, Params, Pendulum, State, plus_scaled, saturate};
+use crate::physics::{Params, Pendulum, State, plus_scaled, saturate};
 
 /// The regulator has failed beyond these deviations of θ1 and θ2, rad.
 const WIDE: [f64; 2] = [FRAC_PI_2, 3.1];
@@ -64,15 +64,15 @@ pub(super) struct Recovery<S> {
 impl<S: Real> Recovery<S> {
     /// See [`Planner::new`](super::planner::Planner::new).
     pub(super) fn new<A: Arithmetic<Scalar = S>>(
-        params: Params<S>,
+        mut params: Params<S>,
         limit: S,
     ) -> Result<Self, ControlError> {
         Range::AboveZero.check("the largest torque", limit.to_f64(), "N m")?;
         let machine = Pendulum::<A>::new(params, State::UPRIGHT)?;
         let units = Units::new(&params, limit);
-        let none = Joints { joint1: S::ZERO, joint2: S::ZERO };
-        let is_dry = params.coulomb != none;
-        let free = Pendulum::<A>::new(Params { coulomb: none, ..params }, State::UPRIGHT)?;
+        let is_dry = [params.coulomb1, params.coulomb2] != [S::ZERO; 2];
+        (params.coulomb1, params.coulomb2) = (S::ZERO, S::ZERO);
+        let free = Pendulum::<A>::new(params, State::UPRIGHT)?;
         let far = f64::INFINITY;
         let design = Design::new(&linearize_step(&free, S::ZERO)?, units, [LINEAR, far, far, far])?;
         if design.roughness(PI, params.dt) > if is_dry { ROUGH_DRY } else { ROUGH } {

@@ -6,7 +6,7 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::Real;
 use crate::numpy::uniform;
-use crate::physics::{Dynamics, FIELDS, Joints, Modeled, Params, check_params};
+use crate::physics::{Dynamics, FIELDS, Modeled, Params, check_params};
 
 /// How a reset draws one parameter, in its unit. Where both bounds are equal, it draws nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,8 +138,10 @@ impl<S: Real> Draws<S> {
         torques: [Draw::Fixed; 3],
         torque_noise: Draw::Fixed,
         dynamics: Dynamics::Book,
-        friction: Joints { joint1: Draw::Fixed, joint2: Draw::Fixed },
-        coulomb: Joints { joint1: Draw::Fixed, joint2: Draw::Fixed },
+        damping1: Draw::Fixed,
+        damping2: Draw::Fixed,
+        coulomb1: Draw::Fixed,
+        coulomb2: Draw::Fixed,
         rotor: Draw::Fixed,
     };
 

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::control::{Estimator, Noise, difference};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Joints, Pendulum};
+use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, Portable, State};
 
 /// RealAIGym's machine, with its motor's friction.
@@ -21,8 +21,10 @@ pub fn real() -> Params {
         dt: 0.002,
         max_velocity1: f64::INFINITY,
         max_velocity2: f64::INFINITY,
-        friction: Joints { joint1: 0.001, joint2: 0.001 },
-        coulomb: Joints { joint1: 0.16, joint2: 0.12 },
+        damping1: 0.001,
+        damping2: 0.001,
+        coulomb1: 0.16,
+        coulomb2: 0.12,
         ..Params::DEFAULT
     };
     params.with_inertias_about_joints([0.0319, 0.0509]).with_rotor(6.29e-5, 6.0)
@@ -147,8 +149,10 @@ fn ten_seconds_of_motion_tell_the_parameters() {
                 inertia1: wrong(truth.inertia1),
                 inertia2: wrong(truth.inertia2),
                 rotor: 0.0,
-                friction: Joints { joint1: 0.0, joint2: 0.0 },
-                coulomb: Joints { joint1: wrong(0.16), joint2: wrong(0.12) },
+                damping1: 0.0,
+                damping2: 0.0,
+                coulomb1: wrong(0.16),
+                coulomb2: wrong(0.12),
                 ..truth
             };
             let deviations = Params {
@@ -158,8 +162,10 @@ fn ten_seconds_of_motion_tell_the_parameters() {
                 inertia1: 0.002,
                 inertia2: 0.002,
                 rotor: 0.003,
-                friction: Joints { joint1: 0.01, joint2: 0.01 },
-                coulomb: Joints { joint1: 0.02, joint2: 0.02 },
+                damping1: 0.01,
+                damping2: 0.01,
+                coulomb1: 0.02,
+                coulomb2: 0.02,
                 ..Params::DEFAULT
             };
             let (given, deviations) = (given.cast(), deviations.cast());
@@ -193,7 +199,6 @@ fn random(rng: &mut Pcg64) -> Params {
 /// Lengths × a, masses × b and times × √a: in its own units the machine is the same.
 pub fn scaled(params: &Params, a: f64, b: f64, time: f64) -> Params {
     let (inertia, torque) = (a * a * b, a * b);
-    let joints = |x: Joints<f64>, unit| Joints { joint1: x.joint1 * unit, joint2: x.joint2 * unit };
     Params {
         length1: params.length1 * a,
         length2: params.length2 * a,
@@ -204,8 +209,10 @@ pub fn scaled(params: &Params, a: f64, b: f64, time: f64) -> Params {
         inertia1: params.inertia1 * inertia,
         inertia2: params.inertia2 * inertia,
         dt: params.dt * time,
-        friction: joints(params.friction, torque * time),
-        coulomb: joints(params.coulomb, torque),
+        damping1: params.damping1 * (torque * time),
+        damping2: params.damping2 * (torque * time),
+        coulomb1: params.coulomb1 * torque,
+        coulomb2: params.coulomb2 * torque,
         rotor: params.rotor * inertia,
         ..*params
     }
@@ -216,7 +223,7 @@ fn lives_on<A: Arithmetic>() {
     let mut rng = Pcg64::new(7);
     for i in 0..400 {
         let mut params = random(&mut rng);
-        params.coulomb = Joints::default();
+        (params.coulomb1, params.coulomb2) = (0.0, 0.0);
         let limit = 9.81 * params.mass2 * params.length2;
         let angle = decades(&mut rng, -5.0, -2.5);
         let torque = limit * decades(&mut rng, -4.0, -1.0);
@@ -270,12 +277,13 @@ fn a_machine_of_another_size_is_estimated_alike() {
         inertia1: 0.002,
         inertia2: 0.002,
         rotor: 0.003,
-        friction: Joints { joint1: 0.01, joint2: 0.01 },
+        damping1: 0.01,
+        damping2: 0.01,
         ..real()
     };
     // The width of Coulomb friction has a unit.
-    let given = Params { coulomb: Joints::default(), ..real() };
-    let deviations = Params { coulomb: Joints::default(), ..deviations };
+    let given = Params { coulomb1: 0.0, coulomb2: 0.0, ..real() };
+    let deviations = Params { coulomb1: 0.0, coulomb2: 0.0, ..deviations };
     let found = |a: f64, b: f64| {
         let time = a.sqrt();
         let noise = Noise { angle: 4e-4, torque: 0.05 * a * b };

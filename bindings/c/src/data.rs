@@ -78,13 +78,6 @@ impl From<acrobot_state_t> for State<f32> {
 
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct acrobot_joints_t {
-    pub joint1: f32,
-    pub joint2: f32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy)]
 pub struct acrobot_params_t {
     pub length1: f32,
     pub length2: f32,
@@ -100,8 +93,10 @@ pub struct acrobot_params_t {
     pub max_velocity2: f32,
     pub torques: [f32; 3],
     pub torque_noise: f32,
-    pub friction: acrobot_joints_t,
-    pub coulomb: acrobot_joints_t,
+    pub damping1: f32,
+    pub damping2: f32,
+    pub coulomb1: f32,
+    pub coulomb2: f32,
     pub rotor: f32,
     pub dynamics: c_int,
 }
@@ -128,13 +123,6 @@ pub struct acrobot_draw_t {
 
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct acrobot_joint_draws_t {
-    pub joint1: acrobot_draw_t,
-    pub joint2: acrobot_draw_t,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy)]
 pub struct acrobot_draws_t {
     pub length1: acrobot_draw_t,
     pub length2: acrobot_draw_t,
@@ -150,8 +138,10 @@ pub struct acrobot_draws_t {
     pub max_velocity2: acrobot_draw_t,
     pub torques: [acrobot_draw_t; 3],
     pub torque_noise: acrobot_draw_t,
-    pub friction: acrobot_joint_draws_t,
-    pub coulomb: acrobot_joint_draws_t,
+    pub damping1: acrobot_draw_t,
+    pub damping2: acrobot_draw_t,
+    pub coulomb1: acrobot_draw_t,
+    pub coulomb2: acrobot_draw_t,
     pub rotor: acrobot_draw_t,
 }
 

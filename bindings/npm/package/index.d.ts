@@ -68,10 +68,10 @@ export interface Params {
   torqueNoise: number;
   /** Equations of the book or of the NIPS paper: Gymnasium's `book_or_nips`. Default: "book". */
   dynamics: "book" | "nips";
-  /** Friction of the fixed joint, N m s/rad; 0 or more. */
-  friction1: number;
-  /** Friction between the links, N m s/rad; 0 or more. */
-  friction2: number;
+  /** Viscous friction of the fixed joint, N m s/rad; 0 or more. */
+  damping1: number;
+  /** Viscous friction between the links, N m s/rad; 0 or more. */
+  damping2: number;
   /** Coulomb friction of the fixed joint, N m; 0 or more. */
   coulomb1: number;
   /** Coulomb friction between the links, N m; 0 or more. */

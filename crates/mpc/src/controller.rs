@@ -4,7 +4,7 @@ use core::f32::consts::TAU;
 
 use acrobot::arithmetic::Damped;
 use acrobot::control::{ControlError, Estimator, Knot, Noise};
-use acrobot::physics::{Joints, saturate};
+use acrobot::physics::saturate;
 use acrobot::{Error, Fast, Params, State};
 
 /// The arithmetic of the estimator and of plans.
@@ -35,15 +35,17 @@ impl Settings {
     /// How wrong the parameters may be.
     fn deviations(&self) -> Params<f32> {
         let Params { mass1, mass2, center_of_mass1: lc1, center_of_mass2: lc2, .. } = self.params;
-        let both = |part| Joints { joint1: part * self.limit, joint2: part * self.limit };
+        let [viscous, dry] = [VISCOUS, DRY].map(|part| part * self.limit);
         Params {
             mass1: DOUBT * mass1,
             mass2: DOUBT * mass2,
             inertia1: DOUBT * (self.params.inertia1 + mass1 * (lc1 * lc1)),
             inertia2: DOUBT * (self.params.inertia2 + mass2 * (lc2 * lc2)),
             length1: 0.0,
-            friction: both(VISCOUS),
-            coulomb: both(DRY),
+            damping1: viscous,
+            damping2: viscous,
+            coulomb1: dry,
+            coulomb2: dry,
             rotor: 0.0,
             ..self.params
         }

@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 use acrobot::arithmetic::{Arithmetic, Real as _};
 use acrobot::control::difference;
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Joints, Pendulum};
+use acrobot::physics::Pendulum;
 use acrobot::{Error, Params, State};
 
 /// RealAIGym's acrobot, design_C.1, with a motor of 6 N m: encoders of 4,096 counts, Coulomb
@@ -37,8 +37,10 @@ impl<A: Arithmetic> Machine<A> {
             dt: 0.002,
             max_velocity1: f64::INFINITY,
             max_velocity2: f64::INFINITY,
-            friction: Joints { joint1: 0.001, joint2: 0.001 },
-            coulomb: Joints { joint1: 0.16, joint2: 0.12 },
+            damping1: 0.001,
+            damping2: 0.001,
+            coulomb1: 0.16,
+            coulomb2: 0.12,
             ..Params::DEFAULT
         };
         let params = params

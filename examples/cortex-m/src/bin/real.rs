@@ -9,7 +9,6 @@ use core::cell::RefCell;
 
 use acrobot::arithmetic::Damped;
 use acrobot::control::ControlError;
-use acrobot::physics::Joints;
 use acrobot::{Fast, Params};
 use acrobot_cortex_m::ram;
 use cortex_m::peripheral::syst::SystClkSource;
@@ -40,8 +39,8 @@ static REAL: Mutex<RefCell<Option<Real>>> = Mutex::new(RefCell::new(None));
 
 fn start() -> Result<Replanner<100>, ControlError> {
     let machine = Machine::new(1)?;
-    let (friction, coulomb) = (Joints::default(), Joints::default());
-    let params = Params { friction, coulomb, ..machine.params() };
+    let params = Params { damping1: 0.0, damping2: 0.0, ..machine.params() };
+    let params = Params { coulomb1: 0.0, coulomb2: 0.0, ..params };
     let settings = Settings { params: params.cast(), limit: 6.0, counts: [4096; 2], ticks: 5 };
     let controller = Controller::new(settings)?;
     let real = Real { machine, controller, ticks: 0, upright: [0; 2], slowest: 0 };

@@ -13,7 +13,6 @@ use std::f64::consts::TAU;
 use acrobot::arithmetic::Damped;
 use acrobot::control::{ControlError, Evidence, Sample};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::Joints;
 use acrobot::{Params, Portable};
 use clap::Parser;
 use mpc::{Controller, Replanner, Settings};
@@ -107,7 +106,7 @@ fn main() -> anyhow::Result<()> {
         ("the true one", |truth, _| Ok(truth)),
         ("identified", identified),
         ("without friction", |truth, _| {
-            Ok(Params { friction: Joints::default(), coulomb: Joints::default(), ..truth })
+            Ok(Params { damping1: 0.0, damping2: 0.0, coulomb1: 0.0, coulomb2: 0.0, ..truth })
         }),
     ];
     for (name, model) in models {

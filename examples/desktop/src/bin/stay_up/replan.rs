@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use acrobot::arithmetic::Damped;
 use acrobot::control::{Estimator, Knot, Noise};
 use acrobot::numpy::uniform;
-use acrobot::physics::{Joints, saturate};
+use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, Portable};
 use rayon::prelude::*;
 
@@ -84,7 +84,8 @@ fn play(
         length1: DOUBT * given.length1,
         inertia1: DOUBT * (given.inertia1 + given.mass1 * given.center_of_mass1.powi(2)),
         inertia2: DOUBT * (given.inertia2 + given.mass2 * given.center_of_mass2.powi(2)),
-        friction: Joints { joint1: 0.0, joint2: 0.0 },
+        damping1: 0.0,
+        damping2: 0.0,
         ..Params::DEFAULT
     };
     let noise = Noise { angle: angle.max(1e-6) / 3.0_f64.sqrt(), torque: 1e-3 };
