@@ -54,18 +54,15 @@
 // The parameter stays as it is.
 #define ACROBOT_DRAW_FIXED 0
 
-// The number of the parameter before it: `inertia2` is `inertia1`.
-#define ACROBOT_DRAW_AS_BEFORE 1
-
 // Uniformly from `low` to `high`.
-#define ACROBOT_DRAW_UNIFORM 2
+#define ACROBOT_DRAW_UNIFORM 1
 
 // Its logarithm uniformly; `low` is above 0.
-#define ACROBOT_DRAW_LOG_UNIFORM 3
+#define ACROBOT_DRAW_LOG_UNIFORM 2
 
 // From a normal distribution truncated at `low` and `high`. `mean` is between these, and the
 // standard deviation above 0.
-#define ACROBOT_DRAW_NORMAL 4
+#define ACROBOT_DRAW_NORMAL 3
 
 // Bytes of an acrobot_t.
 #define ACROBOT_SIZE 272

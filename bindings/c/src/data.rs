@@ -103,13 +103,11 @@ pub struct acrobot_params_t {
 
 pub const ACROBOT_DRAW_FIXED: c_int = 0;
 
-pub const ACROBOT_DRAW_AS_BEFORE: c_int = 1;
+pub const ACROBOT_DRAW_UNIFORM: c_int = 1;
 
-pub const ACROBOT_DRAW_UNIFORM: c_int = 2;
+pub const ACROBOT_DRAW_LOG_UNIFORM: c_int = 2;
 
-pub const ACROBOT_DRAW_LOG_UNIFORM: c_int = 3;
-
-pub const ACROBOT_DRAW_NORMAL: c_int = 4;
+pub const ACROBOT_DRAW_NORMAL: c_int = 3;
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -167,11 +165,10 @@ impl TryFrom<acrobot_draws_t> for Draws<f32> {
             let acrobot_draw_t { kind, low, high, mean, standard_deviation: std } = draw;
             *to = match kind {
                 ACROBOT_DRAW_FIXED => Draw::Fixed,
-                ACROBOT_DRAW_AS_BEFORE => Draw::AsBefore,
                 ACROBOT_DRAW_UNIFORM => Draw::Uniform { low, high },
                 ACROBOT_DRAW_LOG_UNIFORM => Draw::LogUniform { low, high },
                 ACROBOT_DRAW_NORMAL => Draw::Normal { mean, std, low, high },
-                _ => return Err(Rejected::number("kind", kind.into(), "", "from 0 to 4")),
+                _ => return Err(Rejected::number("kind", kind.into(), "", "from 0 to 3")),
             };
         }
         Ok(Self::new(params)?)

@@ -264,9 +264,9 @@ static void arguments_of_an_acrobot(void)
     REJECTED(NULL, acrobot_set_state(acrobot, NULL, &error));
     REJECTED(NULL, acrobot_set_params(acrobot, NULL, &error));
     REJECTED(NULL, acrobot_draw_params(acrobot, NULL, &error));
-    draws.gravity.kind = 5;
-    expect_message(acrobot_draw_params(acrobot, &draws, &error), "kind must be from 0 to 4, got ");
-    CHECK(error.value == 5);
+    draws.gravity.kind = 4;
+    expect_message(acrobot_draw_params(acrobot, &draws, &error), "kind must be from 0 to 3, got ");
+    CHECK(error.value == 4);
     REJECTED(NULL, acrobot_deviation(acrobot, NULL, &x));
     REJECTED(OUT_OF_RANGE, acrobot_deviation(acrobot, &FAR, &x));
     REJECTED(NULL, acrobot_lqr(acrobot, NULL, &ONES, 1, &x, &error));

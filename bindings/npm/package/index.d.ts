@@ -83,15 +83,13 @@ export interface Params {
 /**
  * How a reset draws a number, in the parameter's unit: uniformly from [low, high], with its
  * logarithm uniform, with a low above 0, or from a normal distribution that is truncated at the
- * bounds, by [mean, standard deviation, low, high]. Equal bounds draw nothing. "asBefore" is the
- * number of the parameter before it in `Params`: `inertia2` is `inertia1`.
+ * bounds, by [mean, standard deviation, low, high]. Equal bounds draw nothing.
  */
 export type Draw =
   | readonly [low: number, high: number]
   | { readonly uniform: readonly [low: number, high: number] }
   | { readonly logUniform: readonly [low: number, high: number] }
   | { readonly normal: readonly [mean: number, std: number, low: number, high: number] }
-  | "asBefore"
   | "fixed";
 
 /** What a reset draws of the parameters, in their order. Others, and "fixed" ones, stay. */

@@ -77,7 +77,7 @@ const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
 const DRAW =
   "mass1 must be drawn by [low, high], { logUniform: [low, high] }, " +
-  '{ normal: [mean, std, low, high] }, "asBefore" or "fixed"';
+  '{ normal: [mean, std, low, high] } or "fixed"';
 
 test("other arguments are rejected with the value and the rule, and nothing changes", () => {
   const acrobot = new Acrobot({ seed: 1 });
