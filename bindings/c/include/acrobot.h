@@ -222,7 +222,8 @@ typedef struct {
   float low;
   float high;
   float mean;
-  float standard_deviation;
+  // The standard deviation.
+  float std;
 } acrobot_draw_t;
 
 // How each parameter is drawn, in the order of acrobot_params_t. Zeros draw nothing.

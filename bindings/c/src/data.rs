@@ -116,7 +116,7 @@ pub struct acrobot_draw_t {
     pub low: f32,
     pub high: f32,
     pub mean: f32,
-    pub standard_deviation: f32,
+    pub std: f32,
 }
 
 #[repr(C)]
@@ -162,7 +162,7 @@ impl TryFrom<acrobot_draws_t> for Draws<f32> {
         let draws: [acrobot_draw_t; NUMBERS] = unsafe { transmute(draws) };
         let mut params = Draws::FIXED;
         for (to, draw) in params.numbers_mut().into_iter().zip(draws) {
-            let acrobot_draw_t { kind, low, high, mean, standard_deviation: std } = draw;
+            let acrobot_draw_t { kind, low, high, mean, std } = draw;
             *to = match kind {
                 ACROBOT_DRAW_FIXED => Draw::Fixed,
                 ACROBOT_DRAW_UNIFORM => Draw::Uniform { low, high },
