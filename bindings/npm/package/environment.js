@@ -9,7 +9,7 @@ import {
   bytes, checked, copied, integers, invalid, isNumber, numbers, positive, randomSeed, wasm,
 } from "./wasm.js";
 
-export const TASKS = ["acrobot", "swingup", "balance"];
+export const TASKS = ["gymnasium", "swingup", "balance"];
 export const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 /** The kinds of draws in the order of the module, with the count of their numbers. */
 const DRAWS = { fixed: 0, uniform: 2, logUniform: 2, normal: 4 };

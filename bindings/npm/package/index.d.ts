@@ -33,9 +33,9 @@ export interface State {
 
 /**
  * The parameters, rounded to single precision. The lengths, masses, torque noise and `dynamics` of
- * a swing-up have the defaults below, the others those of dm_control. The task `"balance"` has
+ * a swing-up have the defaults below, the others those of dm_control. The task "balance" has
  * other defaults for `dt`, 0.02, and `torques`, [-10, 0, 10]. Friction and `rotor` are 0 by
- * default, and must be in "acrobot".
+ * default, and must be 0 in the task "gymnasium".
  */
 export interface Params {
   /** Length of link 1, m; above 0. Default: 1. */
@@ -98,11 +98,11 @@ export type Draws = {
 } & { readonly torques?: readonly [Draw, Draw, Draw] };
 
 /**
- * Gymnasium's task, or one that no state ends, with rewards from 0 to 1 and other parameters:
+ * "gymnasium", or a task that no state ends, with rewards from 0 to 1 and other parameters:
  * "swingup", dm_control's `acrobot-swingup`, from rest anywhere to upright in 1000 steps, or
  * "balance", to stay upright for 500, with the reward (2 − cos θ1 − cos(θ1 + θ2)) / 4.
  */
-export type Task = "acrobot" | "swingup" | "balance";
+export type Task = "gymnasium" | "swingup" | "balance";
 
 export interface Options {
   /** The seed of the first initial state and all later random numbers. Default: random. */
@@ -111,7 +111,7 @@ export interface Options {
   params?: Readonly<Partial<Params>>;
   /** The number of steps that truncates an episode, from 1 to 2^32 − 1. Default: 500. */
   maxSteps?: number;
-  /** Default: "acrobot". */
+  /** Default: "gymnasium". */
   task?: Task;
   /** As `setDraws`. Default: none. */
   draws?: Draws;

@@ -48,7 +48,7 @@ pub enum Engine {
     Float32(Many<Damped<Fast>>),
     Float64(Many<Damped<Reference>>),
     /// Computes as Gymnasium does.
-    Gymnasium(Many<Damped<Host>>),
+    Host(Many<Damped<Host>>),
 }
 
 impl Engine {
@@ -60,7 +60,7 @@ impl Engine {
     ) -> Result<Self, Error> {
         Ok(match arithmetic {
             "float64" => Self::Float64(Many::new(task, len, seed)?),
-            "gymnasium" => Self::Gymnasium(Many::new(task, len, seed)?),
+            "host" => Self::Host(Many::new(task, len, seed)?),
             _ => Self::Float32(Many::new(task, len, seed)?),
         })
     }
@@ -72,7 +72,7 @@ macro_rules! with_batch {
         match $engine {
             $crate::engine::Engine::Float32($many) => $result,
             $crate::engine::Engine::Float64($many) => $result,
-            $crate::engine::Engine::Gymnasium($many) => $result,
+            $crate::engine::Engine::Host($many) => $result,
         }
     };
 }

@@ -93,7 +93,7 @@ class Parameters:
     #: The names of the parameters.
     _NAMES: tuple[str, ...] = ()
     #: The task, by its name in Rust.
-    _TASK = "acrobot"
+    _TASK = "gymnasium"
     #: The default bound of initial states, rad and rad/s.
     _BOUND: float = BOUND
     #: Whether actions are numbers in a ``Box``, and what they are.
