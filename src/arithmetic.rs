@@ -173,7 +173,7 @@ impl Arithmetic for Micro {
     }
 }
 
-/// An arithmetic with [friction](crate::physics::Joints) and a rotor, which are 0 by default.
+/// An arithmetic with [friction](crate::guide::equations#friction-and-rotors) and a rotor, which are 0 by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Damped<A>(PhantomData<A>);

@@ -42,7 +42,7 @@ pub(crate) use friction::{coulomb_friction, friction};
 pub(crate) use geometry::{directions, positions};
 pub(crate) use model::{Constants, Defaults, Given, Model, Modeled, WIDTH};
 pub(crate) use params::FIELDS;
-pub use params::{Dynamics, Joints, Params};
+pub use params::{Dynamics, Params};
 pub use pendulum::Pendulum;
 pub(crate) use pendulum::{check_torque, sin_cos};
 pub(crate) use rk4::plus_scaled;

@@ -11,7 +11,7 @@ use crate::arithmetic::Arithmetic;
 use crate::task::Task;
 
 /// Incremented whenever the fields of any snapshot change.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile.
 const LIMIT: usize = 16;

@@ -107,17 +107,11 @@ fn parameters_are_described_with_their_units_and_ranges() {
             "a finite number of" => "finite",
             _ => rule,
         };
-        let (of, field) = name.rsplit_once('.').unwrap_or(("", name));
-        let field = field.split('[').next().unwrap();
-        let declared = if of.is_empty() { field } else { of };
-        check("src/physics/params.rs", ["pub ", declared, ": "], unit, range);
-        let of_c = if of.is_empty() { "float " } else { "acrobot_joints_t " };
+        let field = name.split('[').next().unwrap();
+        check("src/physics/params.rs", ["pub ", field, ": "], unit, range);
         let end = if name.ends_with(']') { "[" } else { ";" };
-        check("bindings/c/include/acrobot.h", [of_c, declared, end], unit, range);
-        let camel_case = match of {
-            "" => field.replace("_of_mass", "OfMass").replace("_velocity", "Velocity"),
-            _ => field.replace("joint", of),
-        };
+        check("bindings/c/include/acrobot.h", ["float ", field, end], unit, range);
+        let camel_case = field.replace("_of_mass", "OfMass").replace("_velocity", "Velocity");
         let camel_case = camel_case.replace("_noise", "Noise");
         check("bindings/npm/package/index.d.ts", ["", &camel_case, ": "], unit, range);
         let python = ["", IN_PYTHON[place], ": "];
@@ -143,8 +137,8 @@ const IN_PYTHON: [&str; 21] = [
     "AVAIL_TORQUE",
     "AVAIL_TORQUE",
     "torque_noise_max",
-    "FRICTION_1",
-    "FRICTION_2",
+    "DAMPING_1",
+    "DAMPING_2",
     "COULOMB_1",
     "COULOMB_2",
     "ROTOR",

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use acrobot::arithmetic::{Arithmetic, Damped, Real, Reference};
 use acrobot::control::model::LinearModel;
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Joints, Pendulum, wrap};
+use acrobot::physics::{Pendulum, wrap};
 use acrobot::task::{Draw, Draws};
 use acrobot::{Acrobot, Fast, Params, Portable, State};
 use common::text_of;
@@ -32,7 +32,8 @@ fn machines() -> Vec<(Params, Vec<[f64; 9]>)> {
                     dt: 0.002,
                     max_velocity1: f64::INFINITY,
                     max_velocity2: f64::INFINITY,
-                    friction: Joints { joint1: 0.001, joint2: 0.002 },
+                    damping1: 0.001,
+                    damping2: 0.002,
                     ..Params::DEFAULT
                 };
                 let params = params.with_inertias_about_joints([i1, i2]).with_rotor(rotor, 6.0);
@@ -182,13 +183,14 @@ fn friction_holds_in_steps_of_any_length() {
             inertia1: draw(0.01, 0.5),
             inertia2: draw(0.01, 0.5),
             gravity: 0.0,
-            friction: Joints { joint1: draw(0.0, 1.0), joint2: draw(0.0, 1.0) },
+            damping1: draw(0.0, 1.0),
+            damping2: draw(0.0, 1.0),
             ..Params::DEFAULT
         };
         let part = if i % 2 == 0 { 0.0 } else { draw(0.0, 2.7) / params.dt / rate(params) };
-        params.friction.joint1 *= part;
-        params.friction.joint2 *= part;
-        params.coulomb = Joints { joint1: draw(0.0, 2.0), joint2: draw(0.0, 2.0) };
+        params.damping1 *= part;
+        params.damping2 *= part;
+        (params.coulomb1, params.coulomb2) = (draw(0.0, 2.0), draw(0.0, 2.0));
         let start = State::from([0.0, draw(-3.0, 3.0), draw(-0.1, 0.1), draw(-0.1, 0.1)]);
         let mut pendulum = Pendulum::<Damped<Fast>>::new(params.cast(), start.cast()).unwrap();
         let first = pendulum.energy();
@@ -207,8 +209,10 @@ fn viscous_friction_at_its_limit_leaves_nothing_to_coulombs() {
     const fn machine(coulomb: f32) -> Pendulum<Damped<Fast>> {
         let [friction, coulomb] = [25.0, coulomb];
         let params = Params {
-            friction: Joints { joint1: friction, joint2: friction },
-            coulomb: Joints { joint1: coulomb, joint2: coulomb },
+            damping1: friction,
+            damping2: friction,
+            coulomb1: coulomb,
+            coulomb2: coulomb,
             ..Params::<f32>::DEFAULT
         };
         let state = State { theta1: 0.5, theta2: 0.1, dtheta1: 0.2, dtheta2: -0.3 };
@@ -241,7 +245,8 @@ fn friction_that_holds_creeps_at_a_third_of_the_width() {
             inertia2: square,
             gravity: 0.0,
             dt: 1e-3,
-            coulomb: Joints { joint1: square, joint2: square },
+            coulomb1: square,
+            coulomb2: square,
             ..Params::DEFAULT
         };
         let mut pendulum = Pendulum::<Damped<Portable>>::new(params, State::HANGING).unwrap();
@@ -257,12 +262,7 @@ fn friction_that_holds_creeps_at_a_third_of_the_width() {
 /// RealAIGym's c atan(100 v) differs by at most 31 % of the largest, and 7 % from 0.1 rad/s on.
 #[test]
 fn coulomb_friction_is_near_realaigyms() {
-    let params = Params {
-        gravity: 0.0,
-        dt: 1e-4,
-        coulomb: Joints { joint1: 0.0, joint2: 1.0 },
-        ..Params::DEFAULT
-    };
+    let params = Params { gravity: 0.0, dt: 1e-4, coulomb1: 0.0, coulomb2: 1.0, ..Params::DEFAULT };
     let [mut most, mut most_of_fast] = [0.0_f64; 2];
     for i in 1..=10_000 {
         let dtheta2 = f64::from(i) * 1e-4;

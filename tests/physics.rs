@@ -4,7 +4,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
 use acrobot::batch::VecBatch;
 
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use acrobot::physics::{Dynamics, Joints, Pendulum};
+use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::task::{Draw, Draws};
 use acrobot::{Acrobot, Params, Portable, State, TimeLimit};
 
@@ -74,9 +74,8 @@ fn the_equations_are_the_inverse_of_newton_and_eulers() {
             let params = Params { dynamics, ..params };
             check::<Portable>(params, state, torque);
             check::<GymnasiumF64>(params, state, torque);
-            let friction = Joints { joint1: 0.3, joint2: 0.7 };
-            let coulomb = Joints { joint1: 0.2, joint2: 0.1 };
-            let params = Params { friction, coulomb, ..params }.with_rotor(0.002, 6.0);
+            let params = Params { damping1: 0.3, damping2: 0.7, ..params };
+            let params = Params { coulomb1: 0.2, coulomb2: 0.1, ..params }.with_rotor(0.002, 6.0);
             check::<Damped<Portable>>(params, state, torque);
             check::<Damped<Reference>>(params, state, torque);
             check::<Damped<GymnasiumF64>>(params, state, torque);
@@ -123,11 +122,10 @@ fn positions_and_energies_follow_from_states_and_torques() {
 
 #[test]
 fn an_arithmetic_without_friction_rejects_it() {
-    let rule = "friction.joint2 must be 0 unless the arithmetic is Damped, in N m s/rad, got 0.5";
-    let friction = Joints { joint1: -0.0, joint2: 0.5 };
-    let with = Params { friction, ..Params::DEFAULT };
-    let friction = Joints { joint1: Draw::Fixed, joint2: Draw::Uniform { low: 0.0, high: 0.5 } };
-    let draws = Draws::new(Params { friction, ..Draws::FIXED }).unwrap();
+    let rule = "damping2 must be 0 unless the arithmetic is Damped, in N m s/rad, got 0.5";
+    let with = Params { damping1: -0.0, damping2: 0.5, ..Params::DEFAULT };
+    let damping2 = Draw::Uniform { low: 0.0, high: 0.5 };
+    let draws = Draws::new(Params { damping2, ..Draws::FIXED }).unwrap();
     let mut pendulum = Pendulum::<Portable>::hanging();
     let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(0));
     let mut batch = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();

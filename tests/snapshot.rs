@@ -33,11 +33,11 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
         let error = changed.unwrap_err().to_string();
         error.rsplit_once(" at line").unwrap().0.to_owned()
     };
-    let ours = r#""acrobot", version 5, task "gymnasium", arithmetic "portable""#;
+    let ours = r#""acrobot", version 6, task "gymnasium", arithmetic "portable""#;
     let header =
-        r#""snapshot":{"of":"acrobot","version":5,"task":"gymnasium","arithmetic":"portable"},"#;
+        r#""snapshot":{"of":"acrobot","version":6,"task":"gymnasium","arithmetic":"portable"},"#;
     for (from, to) in
-        [(r#""acrobot""#, r#""batch""#), ("5", "4"), ("gymnasium", "swingup"), ("portable", "host")]
+        [(r#""acrobot""#, r#""batch""#), ("6", "5"), ("gymnasium", "swingup"), ("portable", "host")]
     {
         let expected = format!("the snapshot must be {ours}, got {}", ours.replace(from, to));
         assert_eq!(error(from, to), expected);
@@ -46,7 +46,7 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
         let found = error(&(unread + r#""params":{"#), &(changed + r#""params":{}"#));
         assert_eq!(found, expected);
     }
-    let no_snapshot = "; the input must be a snapshot of version 5";
+    let no_snapshot = "; the input must be a snapshot of version 6";
     assert!(error(r#""acrobot""#, r#""an environment of another kind""#).ends_with(no_snapshot));
     assert_eq!(error(header, ""), format!("missing field `snapshot`{no_snapshot}"));
     let rule = "mass2 must be finite and above 0 kg, got -1.5";
@@ -105,8 +105,8 @@ fn stored<T: Serialize + DeserializeOwned>(original: T, lines: &mut std::str::Li
 
 /// Each version has its own file.
 #[test]
-fn snapshots_of_version_5_stay_readable() {
-    let file = include_str!("data/snapshots_5.txt");
+fn snapshots_of_version_6_stay_readable() {
+    let file = include_str!("data/snapshots_6.txt");
     let mut lines = file.lines();
     let found = [
         stored(busy(), &mut lines),

@@ -32,7 +32,7 @@ RUNS = [
     ("64k", 1_000_000, 20),
     ("64k", 2_000_000, 20),
 ]
-HEAD = "| memory | steps | seeds | return: mean ± sd "
+HEAD = "| memory | steps | seeds | return: mean ± std "
 HEAD += "| 95 % interval of the mean | worst seed | misses |"
 
 
@@ -58,9 +58,9 @@ def measure():
 def row(run, results):
     memory, steps, seeds = run
     means, misses = zip(*results)
-    mean, sd = statistics.mean(means), statistics.stdev(means)
-    error = STUDENT[seeds] * sd / seeds**0.5
-    cells = [f"{memory[:-1]} KiB", f"{steps:,}", f"{seeds}", f"{mean:.1f} ± {sd:.1f}"]
+    mean, std = statistics.mean(means), statistics.stdev(means)
+    error = STUDENT[seeds] * std / seeds**0.5
+    cells = [f"{memory[:-1]} KiB", f"{steps:,}", f"{seeds}", f"{mean:.1f} ± {std:.1f}"]
     cells += [f"{mean - error:.1f} to {mean + error:.1f}", f"{min(means):.1f}"]
     return cells + [f"{sum(misses)} of {1000 * seeds:,}"]
 

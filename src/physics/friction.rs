@@ -2,6 +2,7 @@
 
 use super::arithmetic::Arithmetic;
 use super::model::Model;
+use super::params::Params;
 use crate::math::Numbers;
 use crate::math::sealed::Sealed as _;
 
@@ -12,10 +13,10 @@ pub(crate) fn friction<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,
     [dtheta1, dtheta2]: [V; 2],
 ) -> [(V, V); 2] {
-    let (viscous, coulomb) = (model.params.friction, model.params.coulomb);
+    let Params { damping1, damping2, coulomb1, coulomb2, .. } = model.params;
     [
-        resist::<A, V>(model, [viscous.joint1, coulomb.joint1], dtheta1),
-        resist::<A, V>(model, [viscous.joint2, coulomb.joint2], dtheta2),
+        resist::<A, V>(model, [damping1, coulomb1], dtheta1),
+        resist::<A, V>(model, [damping2, coulomb2], dtheta2),
     ]
 }
 

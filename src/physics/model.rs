@@ -195,14 +195,14 @@ for_f32_and_f64! {
         /// elbow is straight or folded. Infinite where viscous friction leaves Coulomb's no rate.
         const fn width(params: &Params<S>) -> S {
             let [upper, link2, coupling] = params.inertias();
-            let (viscous, coulomb) = (params.friction, params.coulomb);
+            let &Params { damping1, damping2, coulomb1, coulomb2, .. } = params;
             let mut width = WIDTH as S;
             let mut ends: &[S] = &[coupling - params.rotor, -coupling - params.rotor];
             while let &[between, ref left @ ..] = ends {
                 let inertia1 = upper + link2 + 2.0 * between;
                 let determinant = upper * link2 - between * between;
-                let of_viscous = viscous.joint1 * link2 + viscous.joint2 * inertia1;
-                let of_coulomb = coulomb.joint1 * link2 + coulomb.joint2 * inertia1;
+                let of_viscous = damping1 * link2 + damping2 * inertia1;
+                let of_coulomb = coulomb1 * link2 + coulomb2 * inertia1;
                 let rest = STABLE as S - of_viscous / determinant * params.dt;
                 let least = 1.5 * of_coulomb / determinant * params.dt / rest;
                 let least = if rest > 0.0 { least } else { S::INFINITY };

@@ -19,19 +19,6 @@ pub enum Dynamics {
     Nips,
 }
 
-/// A coefficient of [friction](crate::guide::equations#friction-and-rotors) for each joint. Only
-/// arithmetics with friction, such as [`Damped<Fast>`](crate::arithmetic::Damped), accept one that
-/// is not 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Joints<V> {
-    /// Of the fixed joint, which resists θ̇1.
-    pub joint1: V,
-    /// Of the elbow, which resists θ̇2.
-    pub joint2: V,
-}
-
 /// The parameters of an acrobot. [`Params::DEFAULT`] has Gymnasium's values.
 ///
 /// Link 1 hangs from the fixed joint and link 2 from the tip of link 1. The motor is between the
@@ -78,13 +65,18 @@ pub struct Params<S = f64> {
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,
-    /// Viscous friction: each joint resists its velocity with a torque in proportion to it,
-    /// N m s/rad; 0 or more. This and the fields below must be 0 in an arithmetic without friction.
-    pub friction: Joints<S>,
-    /// Coulomb friction: each joint resists with this torque as soon as it turns, N m; 0 or more.
+    /// Viscous friction of the fixed joint, which resists θ̇1 with a torque in proportion to it,
+    /// N m s/rad; 0 or more. This and the fields below must be 0 in an arithmetic without friction:
+    /// see [`Damped`](crate::arithmetic::Damped).
+    pub damping1: S,
+    /// Viscous friction of the elbow, which resists θ̇2; as `damping1`.
+    pub damping2: S,
+    /// Coulomb friction of the fixed joint: its torque as soon as the joint turns, N m; 0 or more.
     /// Below 0.02 rad/s, or [a larger velocity where `dt` and viscous friction need
     /// it](crate::guide::equations#friction-and-rotors), it is smooth.
-    pub coulomb: Joints<S>,
+    pub coulomb1: S,
+    /// Coulomb friction of the elbow; as `coulomb1`.
+    pub coulomb2: S,
     /// What a [geared rotor](Self::with_rotor) in the elbow takes from the coupling of the links,
     /// kg m²; finite, and so small that the mass matrix is positive definite.
     pub rotor: S,
@@ -187,10 +179,10 @@ pub(crate) const FIELDS: [(&str, &str, Range); 21] = {
         ("torques[1]", "N m", Finite),
         ("torques[2]", "N m", Finite),
         ("torque_noise", "N m", AtLeastZero),
-        ("friction.joint1", "N m s/rad", AtLeastZero),
-        ("friction.joint2", "N m s/rad", AtLeastZero),
-        ("coulomb.joint1", "N m", AtLeastZero),
-        ("coulomb.joint2", "N m", AtLeastZero),
+        ("damping1", "N m s/rad", AtLeastZero),
+        ("damping2", "N m s/rad", AtLeastZero),
+        ("coulomb1", "N m", AtLeastZero),
+        ("coulomb2", "N m", AtLeastZero),
         ("rotor", "kg m²", Finite),
     ]
 };
@@ -226,10 +218,10 @@ impl<S: Copy> Params<S> {
             zero,
             positive,
             &mut self.torque_noise,
-            &mut self.friction.joint1,
-            &mut self.friction.joint2,
-            &mut self.coulomb.joint1,
-            &mut self.coulomb.joint2,
+            &mut self.damping1,
+            &mut self.damping2,
+            &mut self.coulomb1,
+            &mut self.coulomb2,
             &mut self.rotor,
         ]
     }
@@ -259,14 +251,10 @@ impl<S: Copy> Params<S> {
             torques: [f(negative, torques[0]), f(zero, torques[1]), f(positive, torques[2])],
             torque_noise: f(self.torque_noise, other.torque_noise),
             dynamics: self.dynamics,
-            friction: Joints {
-                joint1: f(self.friction.joint1, other.friction.joint1),
-                joint2: f(self.friction.joint2, other.friction.joint2),
-            },
-            coulomb: Joints {
-                joint1: f(self.coulomb.joint1, other.coulomb.joint1),
-                joint2: f(self.coulomb.joint2, other.coulomb.joint2),
-            },
+            damping1: f(self.damping1, other.damping1),
+            damping2: f(self.damping2, other.damping2),
+            coulomb1: f(self.coulomb1, other.coulomb1),
+            coulomb2: f(self.coulomb2, other.coulomb2),
             rotor: f(self.rotor, other.rotor),
         }
     }
@@ -362,8 +350,8 @@ for_f32_and_f64! {
             torques: [-1.0, 0.0, 1.0],
             torque_noise: 0.0,
             dynamics: Dynamics::Book,
-            friction: Joints { joint1: 0.0, joint2: 0.0 },
-            coulomb: Joints { joint1: 0.0, joint2: 0.0 },
+            damping1: 0.0, damping2: 0.0,
+            coulomb1: 0.0, coulomb2: 0.0,
             rotor: 0.0,
         };
 
@@ -376,7 +364,7 @@ for_f32_and_f64! {
             max_velocity1: 1e30,
             max_velocity2: 1e30,
             torques: [-2.0, 0.0, 2.0],
-            friction: Joints { joint1: 0.05, joint2: 0.05 },
+            damping1: 0.05, damping2: 0.05,
             ..Self::ACROBOT
         };
     }

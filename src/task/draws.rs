@@ -6,7 +6,7 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::Real;
 use crate::numpy::uniform;
-use crate::physics::{Dynamics, FIELDS, Joints, Modeled, Params, check_params};
+use crate::physics::{Dynamics, FIELDS, Modeled, Params, check_params};
 
 /// How a reset draws one parameter, in its unit. Where both bounds are equal, it draws nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,8 +15,6 @@ use crate::physics::{Dynamics, FIELDS, Joints, Modeled, Params, check_params};
 pub enum Draw<S = f64> {
     /// The parameter stays as it is.
     Fixed,
-    /// The number of the parameter before it: `inertia2` is `inertia1`.
-    AsBefore,
     /// Uniformly.
     Uniform {
         /// The lower bound.
@@ -46,10 +44,9 @@ pub enum Draw<S = f64> {
 
 impl<S: Real> Draw<S> {
     /// The bounds; of one that does not draw, its number.
-    fn bounds(self, number: S, before: S) -> [S; 2] {
+    fn bounds(self, number: S) -> [S; 2] {
         match self {
             Self::Fixed => [number; 2],
-            Self::AsBefore => [before; 2],
             Self::Uniform { low, high }
             | Self::LogUniform { low, high }
             | Self::Normal { low, high, .. } => [low, high],
@@ -57,7 +54,7 @@ impl<S: Real> Draw<S> {
     }
 
     fn check(self, name: &'static str, unit: &'static str) -> Result<(), Error> {
-        let [low, high] = self.bounds(S::ZERO, S::ZERO).map(S::to_f64);
+        let [low, high] = self.bounds(S::ZERO).map(S::to_f64);
         let out_of_range = |value, rule| Err(Error::OutOfRange { name, value, unit, rule });
         let is_ordered = low <= high; // false for NaN
         if !is_ordered {
@@ -79,8 +76,8 @@ impl<S: Real> Draw<S> {
     }
 
     /// A number between the bounds, with the same bits on all machines.
-    fn draw<R: Rng + ?Sized>(self, number: S, before: S, rng: &mut R) -> S {
-        let [low, high] = self.bounds(number, before);
+    fn draw<R: Rng + ?Sized>(self, number: S, rng: &mut R) -> S {
+        let [low, high] = self.bounds(number);
         if low == high {
             return low;
         }
@@ -138,8 +135,10 @@ impl<S: Real> Draws<S> {
         torques: [Draw::Fixed; 3],
         torque_noise: Draw::Fixed,
         dynamics: Dynamics::Book,
-        friction: Joints { joint1: Draw::Fixed, joint2: Draw::Fixed },
-        coulomb: Joints { joint1: Draw::Fixed, joint2: Draw::Fixed },
+        damping1: Draw::Fixed,
+        damping2: Draw::Fixed,
+        coulomb1: Draw::Fixed,
+        coulomb2: Draw::Fixed,
         rotor: Draw::Fixed,
     };
 
@@ -166,16 +165,15 @@ impl<S: Real> Draws<S> {
 
     /// These parameters, with each drawn one replaced.
     pub fn draw<R: Rng + ?Sized>(&self, params: &Params<S>, rng: &mut R) -> Params<S> {
-        self.replace(params, |draw, number, before| draw.draw(number, before, rng))
+        self.replace(params, |draw, number| draw.draw(number, rng))
     }
 
-    /// These parameters, each replaced by `f` of its draw, its number and that before it. A loop:
-    /// written out for each parameter, the code would be larger.
-    fn replace(&self, params: &Params<S>, mut f: impl FnMut(Draw<S>, S, S) -> S) -> Params<S> {
-        let (mut replaced, mut before) = (*params, S::ZERO);
+    /// These parameters, each replaced by `f` of its draw and its number. A loop: written out for
+    /// each parameter, the code would be larger.
+    fn replace(&self, params: &Params<S>, mut f: impl FnMut(Draw<S>, S) -> S) -> Params<S> {
+        let mut replaced = *params;
         for (number, (_, draw)) in replaced.numbers_mut().into_iter().zip(self.0.numbers()) {
-            *number = f(draw, *number, before);
-            before = *number;
+            *number = f(draw, *number);
         }
         replaced
     }
@@ -185,8 +183,8 @@ impl<S: Modeled> Draws<S> {
     /// Checks these parameters with all drawn ones at their lower, and at their upper bounds. A
     /// draw is between them.
     pub(crate) fn check<A: Arithmetic<Scalar = S>>(&self, params: &Params<S>) -> Result<(), Error> {
-        let low = self.replace(params, |draw, number, before| draw.bounds(number, before)[0]);
-        let high = self.replace(params, |draw, number, before| draw.bounds(number, before)[1]);
+        let low = self.replace(params, |draw, number| draw.bounds(number)[0]);
+        let high = self.replace(params, |draw, number| draw.bounds(number)[1]);
         check_params::<A>(&low)?;
         check_params::<A>(&high)?;
         // Of draws between them the determinant U L − (r + k)² is at least (s − r) (s + r + 2 k),

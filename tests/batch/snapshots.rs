@@ -54,8 +54,8 @@ fn invalid_snapshots_are_rejected() {
         (
             r#""of":"batch""#,
             r#""of":"acrobot""#,
-            "the snapshot must be \"batch\", version 5, task \"gymnasium\", arithmetic \"fast\", \
-                got \"acrobot\", version 5, task \"gymnasium\", arithmetic \"fast\"",
+            "the snapshot must be \"batch\", version 6, task \"gymnasium\", arithmetic \"fast\", \
+                got \"acrobot\", version 6, task \"gymnasium\", arithmetic \"fast\"",
         ),
         (r#""low":-0.1"#, r#""low":0.5"#, "low must be at most high, in rad and rad/s, got 0.5"),
         (r#""mass1":1.0"#, r#""mass1":-1.0"#, "mass1 must be finite and above 0 kg, got -1"),

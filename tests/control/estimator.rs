@@ -7,7 +7,7 @@ use acrobot::control::estimate::{
     Estimator, KalmanFilter, Noise, ParameterEstimator, ParameterStd,
 };
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Joints, Pendulum};
+use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, Portable, State};
 
 /// RealAIGym's machine, with its motor's friction.
@@ -23,8 +23,10 @@ pub fn real() -> Params {
         dt: 0.002,
         max_velocity1: f64::INFINITY,
         max_velocity2: f64::INFINITY,
-        friction: Joints { joint1: 0.001, joint2: 0.001 },
-        coulomb: Joints { joint1: 0.16, joint2: 0.12 },
+        damping1: 0.001,
+        damping2: 0.001,
+        coulomb1: 0.16,
+        coulomb2: 0.12,
         ..Params::DEFAULT
     };
     params.with_inertias_about_joints([0.0319, 0.0509]).with_rotor(6.29e-5, 6.0)
@@ -149,8 +151,10 @@ fn ten_seconds_of_motion_tell_the_parameters() {
                 inertia1: wrong(truth.inertia1),
                 inertia2: wrong(truth.inertia2),
                 rotor: 0.0,
-                friction: Joints { joint1: 0.0, joint2: 0.0 },
-                coulomb: Joints { joint1: wrong(0.16), joint2: wrong(0.12) },
+                damping1: 0.0,
+                damping2: 0.0,
+                coulomb1: wrong(0.16),
+                coulomb2: wrong(0.12),
                 ..truth
             };
             let number = A::Scalar::from_f64;
@@ -161,8 +165,8 @@ fn ten_seconds_of_motion_tell_the_parameters() {
                 inertia1: number(0.002),
                 inertia2: number(0.002),
                 rotor: number(0.003),
-                friction1: number(0.01),
-                friction2: number(0.01),
+                damping1: number(0.01),
+                damping2: number(0.01),
                 coulomb1: number(0.02),
                 coulomb2: number(0.02),
             };
@@ -195,7 +199,6 @@ fn random(rng: &mut Pcg64) -> Params {
 /// Lengths × a, masses × b and times × √a: in its own units the machine is the same.
 pub fn scaled(params: &Params, a: f64, b: f64, time: f64) -> Params {
     let (inertia, torque) = (a * a * b, a * b);
-    let joints = |x: Joints<f64>, unit| Joints { joint1: x.joint1 * unit, joint2: x.joint2 * unit };
     Params {
         length1: params.length1 * a,
         length2: params.length2 * a,
@@ -206,8 +209,10 @@ pub fn scaled(params: &Params, a: f64, b: f64, time: f64) -> Params {
         inertia1: params.inertia1 * inertia,
         inertia2: params.inertia2 * inertia,
         dt: params.dt * time,
-        friction: joints(params.friction, torque * time),
-        coulomb: joints(params.coulomb, torque),
+        damping1: params.damping1 * (torque * time),
+        damping2: params.damping2 * (torque * time),
+        coulomb1: params.coulomb1 * torque,
+        coulomb2: params.coulomb2 * torque,
         rotor: params.rotor * inertia,
         ..*params
     }
@@ -218,7 +223,7 @@ fn lives_on<A: Arithmetic>() {
     let mut rng = Pcg64::new(7);
     for i in 0..400 {
         let mut params = random(&mut rng);
-        params.coulomb = Joints::default();
+        (params.coulomb1, params.coulomb2) = (0.0, 0.0);
         let limit = 9.81 * params.mass2 * params.length2;
         let angle = decades(&mut rng, -5.0, -2.5);
         let torque = limit * decades(&mut rng, -4.0, -1.0);
@@ -266,7 +271,7 @@ fn an_estimator_lives_on_after_any_measurements_and_torques() {
 #[test]
 fn a_machine_of_another_size_is_estimated_alike() {
     // The width of Coulomb friction has a unit.
-    let given = Params { coulomb: Joints::default(), ..real() };
+    let given = Params { coulomb1: 0.0, coulomb2: 0.0, ..real() };
     let found = |a: f64, b: f64| {
         let time = a.sqrt();
         let noise = Noise { angle_std: 4e-4, torque_std: 0.05 * a * b };
@@ -278,8 +283,8 @@ fn a_machine_of_another_size_is_estimated_alike() {
             inertia1: 0.002 * inertia,
             inertia2: 0.002 * inertia,
             rotor: 0.003 * inertia,
-            friction1: 0.01 * (a * b * time),
-            friction2: 0.01 * (a * b * time),
+            damping1: 0.01 * (a * b * time),
+            damping2: 0.01 * (a * b * time),
             ..ParameterStd::default()
         };
         let wrong = Params { mass2: 1.1 * machine.mass2, ..machine };

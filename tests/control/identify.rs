@@ -6,7 +6,6 @@ use std::{env, fs};
 use acrobot::arithmetic::Arithmetic as _;
 use acrobot::control::identify::{Fit, Regression, Sample, identify, prediction_error};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::Joints;
 use acrobot::{Params, Portable};
 
 use crate::estimator::{Machine, base, real, scaled};
@@ -22,8 +21,8 @@ fn machine(rng: &mut Pcg64) -> Params {
         inertia2: part(real.inertia2),
         ..real
     };
-    params.coulomb.joint1 = part(params.coulomb.joint1);
-    params.coulomb.joint2 = part(params.coulomb.joint2);
+    params.coulomb1 = part(params.coulomb1);
+    params.coulomb2 = part(params.coulomb2);
     params
 }
 
@@ -68,8 +67,7 @@ fn ten_seconds_tell_the_inertias() {
         };
         worst.push(largest(&found.values[..3], &inertias(&truth)));
         assert!(largest(&inertias(&params), &found.values[..3]) < 1e-9);
-        let Joints { joint1, joint2 } = truth.coulomb;
-        friction.push(largest(&found.values[8..], &[joint1, joint2]));
+        friction.push(largest(&found.values[8..], &[truth.coulomb1, truth.coulomb2]));
     }
     worst.sort_by(f64::total_cmp);
     friction.sort_by(f64::total_cmp);
@@ -101,7 +99,7 @@ fn a_high_rate_tells_no_less() {
 /// The law of scale: the same motion of a machine with other lengths and masses tells the same.
 #[test]
 fn a_machine_of_another_size_is_identified_alike() {
-    let truth = Params { coulomb: Joints::default(), ..machine(&mut Pcg64::new(8)) };
+    let truth = Params { coulomb1: 0.0, coulomb2: 0.0, ..machine(&mut Pcg64::new(8)) };
     let samples = record(truth, &mut Pcg64::new(9), 9);
     let found = |a: f64, b: f64| {
         let machine = scaled(&truth, a, b, a.sqrt());

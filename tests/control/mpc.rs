@@ -3,7 +3,6 @@
 use acrobot::arithmetic::Damped;
 
 use acrobot::control::mpc::{Controller, Replanner, Settings};
-use acrobot::physics::Joints;
 use acrobot::{Error, Params, Portable};
 use machine::{Machine, realaigym};
 
@@ -55,15 +54,17 @@ fn a_machine_is_held_without_friction_in_the_model_and_with_wrong_masses() {
     let wrong = |truth: Params| Params {
         mass1: 1.05 * truth.mass1,
         mass2: 0.97 * truth.mass2,
-        friction: Joints::default(),
-        coulomb: Joints::default(),
+        damping1: 0.0,
+        damping2: 0.0,
+        coulomb1: 0.0,
+        coulomb2: 0.0,
         ..truth
     };
     for seed in 0..3 {
         let (leans, _, controller) = control(seed, wrong, 15).unwrap();
         assert!(leans.iter().all(|lean| *lean < 0.1), "{seed}: {leans:?}");
-        let Joints { joint1, joint2 } = controller.params().coulomb;
-        let errors = [joint1 - 0.16, joint2 - 0.12];
+        let Params { coulomb1, coulomb2, .. } = *controller.params();
+        let errors = [coulomb1 - 0.16, coulomb2 - 0.12];
         assert!(errors.iter().all(|error| error.abs() < 0.05), "{seed}: {errors:?} N m");
     }
 }

@@ -5,7 +5,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real};
 use acrobot::control::plan::{Cost, Knot, Plan, Planner, Problem, SwingUp};
 use acrobot::control::regulator::BoundedRegulator;
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Joints, Pendulum, saturate};
+use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Acrobot, Error, Fast, Params, Portable, State};
 use common::twins::LEVELS;
 
@@ -286,9 +286,10 @@ fn no_velocity_of_a_plan_reaches_its_bound() -> Result<(), Box<dyn std::error::E
 /// swing-up takes longer than 20 s.
 #[test]
 fn a_weak_motor_swings_up_against_friction() -> Result<(), Box<dyn std::error::Error>> {
-    let friction = Joints { joint1: 0.02, joint2: 0.02 };
+    let [damping1, damping2] = [0.02; 2];
     let [max_velocity1, max_velocity2] = [f32::INFINITY; 2];
-    let params = Params { dt: 0.02, friction, max_velocity1, max_velocity2, ..Params::DEFAULT };
+    let params =
+        Params { dt: 0.02, damping1, damping2, max_velocity1, max_velocity2, ..Params::DEFAULT };
     let mut planner = Planner::<Damped<Fast>>::new(&Problem::swing_up(params, 0.8)?)?;
     let (mut plan, rng) = ([Knot::EMPTY; 1500], &mut Pcg64::new(3));
     let mut ends_upright = || {

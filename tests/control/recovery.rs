@@ -9,7 +9,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::control::plan::{Knot, Plan, Planner, Problem, SwingUp};
 use acrobot::control::regulator::BoundedRegulator;
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Joints, Pendulum, saturate};
+use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Fast, Params, Portable, State};
 
 use crate::cast;
@@ -41,7 +41,7 @@ pub fn holds<A: Arithmetic, K: AsRef<[Knot<A::Scalar>]>>(
     let params: Params = machine.params().cast();
     let rate = time(&params, limit.to_f64()) / params.dt;
     let loses_bits = size_of::<A::Scalar>() == 4 && rate > 100.0;
-    let is_rough = params.coulomb != Joints::default() || loses_bits;
+    let is_rough = [params.coulomb1, params.coulomb2] != [0.0; 2] || loses_bits;
     let [first, last] = [36.0, 40.0].map(|times| steps + (times * rate) as usize);
     (0..last).all(|i| {
         machine.step(saturate(plan.torque(i, machine.state()), limit)).unwrap();
@@ -86,15 +86,13 @@ fn machine(seed: u64, friction: Friction) -> (Params, f64, Pcg64) {
     };
     let limit = strength * weight(&params);
     let time = time(&params, limit);
-    let mut joints = |most: f64| {
-        let [joint1, joint2] = [0; 2].map(|_| uniform(&mut rng, 0.0, most));
-        Joints { joint1, joint2 }
-    };
-    let (viscous, dry) = (joints(0.1 * limit * time), joints(0.03 * limit));
+    let mut joints = |most: f64| [0; 2].map(|_| uniform(&mut rng, 0.0, most));
+    let ([damping1, damping2], [coulomb1, coulomb2]) =
+        (joints(0.1 * limit * time), joints(0.03 * limit));
     let params = match friction {
         Friction::None => params,
-        Friction::Viscous => Params { friction: viscous, ..params },
-        Friction::Dry => Params { friction: viscous, coulomb: dry, ..params },
+        Friction::Viscous => Params { damping1, damping2, ..params },
+        Friction::Dry => Params { damping1, damping2, coulomb1, coulomb2, ..params },
     };
     (Params { dt: time / rate, ..params }, limit, rng)
 }
@@ -237,8 +235,7 @@ fn plans_for_random_machines_hold() {
 /// RealAIGym's machine and Gymnasium's, with friction from which plans fell.
 #[test]
 fn plans_with_dry_friction_hold() {
-    let both = |joint1, joint2| Joints { joint1, joint2 };
-    let gymnasium = Params { dt: 0.02, coulomb: both(0.1, 0.1), ..Params::DEFAULT };
+    let gymnasium = Params { dt: 0.02, coulomb1: 0.1, coulomb2: 0.1, ..Params::DEFAULT };
     let (mut planned, infinite) = (0, f64::INFINITY);
     for (params, limit) in [(Params { dt: 0.01, ..real() }, 5.4), (gymnasium, 5.0)] {
         let params = Params { max_velocity1: infinite, max_velocity2: infinite, ..params };
@@ -285,8 +282,9 @@ fn decisions_hold_at_any_rate() {
 #[test]
 fn a_regulator_keeps_a_machine_with_dry_friction_moving() {
     let swing = |params: Params, limit: f64, part: f64| {
-        let coulomb = Joints { joint1: part * limit, joint2: part * limit };
-        let params = Params { coulomb, max_velocity1: 1e9, max_velocity2: 1e9, ..params };
+        let [coulomb1, coulomb2] = [part * limit; 2];
+        let params =
+            Params { coulomb1, coulomb2, max_velocity1: 1e9, max_velocity2: 1e9, ..params };
         let regulator = BoundedRegulator::<Damped<Portable>>::new(params, limit).unwrap();
         let lean = State { theta1: PI - 0.01, ..State::UPRIGHT };
         let mut machine = Pendulum::<Damped<Portable>>::new(params, lean).unwrap();
@@ -302,7 +300,7 @@ fn a_regulator_keeps_a_machine_with_dry_friction_moving() {
     let gymnasium = Params { dt: 0.01, ..Params::DEFAULT };
     assert_eq!([0.003, 0.01].map(|part| swing(gymnasium, 10.0, part)), [11.0, 48.0]);
     assert!(swing(gymnasium, 10.0, 0.03) > 1000.0);
-    let real = Params { dt: 0.005, friction: Joints::default(), ..real() };
+    let real = Params { dt: 0.005, damping1: 0.0, damping2: 0.0, ..real() };
     assert!([0.003, 0.01, 0.03].iter().all(|part| swing(real, 6.0, *part) > 1000.0));
 }
 

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 NAMES = "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2"
-NAMES += " gravity dt friction1 friction2 coulomb1 coulomb2 rotor"
+NAMES += " gravity dt damping1 damping2 coulomb1 coulomb2 rotor"
 LOW = [0.3, 0.3, 0.3, 0.3, 0.0, 0.0, 0.1, 0.1, -15.0, 0.002]
 HIGH = [2.0, 2.0, 3.0, 3.0, 1.0, 1.0, 2.0, 2.0, 15.0, 0.2]
 NONE = [0.0] * 5

@@ -1,7 +1,7 @@
 """Draws initial states, and then parameters, by NumPy: writes draws.csv to its folder.
 
 A row is a reset: of an acrobot with a seed, or of one of three in a batch with seed 42. Mass 2 is
-uniform, the inertia of both links log-uniform, gravity normal.
+uniform, inertia 1 log-uniform, gravity normal.
 """
 
 import csv
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-COLUMNS = "seed child mass2 inertia1 inertia2 gravity theta1 theta2 dtheta1 dtheta2"
+COLUMNS = "seed child mass2 inertia1 gravity theta1 theta2 dtheta1 dtheta2"
 
 
 def normal(rng, mean, std, low, high):
@@ -25,9 +25,9 @@ def row(rng):
     state = rng.uniform(-0.1, 0.1, 4)
     single = lambda *numbers: np.float32(numbers).astype(float)
     mass2 = rng.uniform(*single(0.8, 1.2))
-    inertia = np.exp(rng.uniform(*np.log(single(0.5, 2.0))))
+    inertia1 = np.exp(rng.uniform(*np.log(single(0.5, 2.0))))
     gravity = normal(rng, *single(9.8, 0.1, 9.5, 10.1))
-    return [str(np.float32(x)) for x in (mass2, inertia, inertia, gravity, *state)]
+    return [str(np.float32(x)) for x in (mass2, inertia1, gravity, *state)]
 
 
 with (Path(__file__).parent / "draws.csv").open("w", newline="") as file:

@@ -54,18 +54,15 @@
 // The parameter stays as it is.
 #define ACROBOT_DRAW_FIXED 0
 
-// The number of the parameter before it: `inertia2` is `inertia1`.
-#define ACROBOT_DRAW_AS_BEFORE 1
-
 // Uniformly from `low` to `high`.
-#define ACROBOT_DRAW_UNIFORM 2
+#define ACROBOT_DRAW_UNIFORM 1
 
 // Its logarithm uniformly; `low` is above 0.
-#define ACROBOT_DRAW_LOG_UNIFORM 3
+#define ACROBOT_DRAW_LOG_UNIFORM 2
 
 // From a normal distribution truncated at `low` and `high`. `mean` is between these, and the
 // standard deviation above 0.
-#define ACROBOT_DRAW_NORMAL 4
+#define ACROBOT_DRAW_NORMAL 3
 
 // Bytes of an acrobot_t.
 #define ACROBOT_SIZE 272
@@ -169,12 +166,6 @@ typedef struct {
   float dtheta2;
 } acrobot_state_t;
 
-// A number for each joint: the fixed one and the elbow.
-typedef struct {
-  float joint1;
-  float joint2;
-} acrobot_joints_t;
-
 // To change one parameter, read all with acrobot_params, and set them.
 typedef struct {
   // Length of link 1, m; above 0. Default 1.
@@ -207,10 +198,15 @@ typedef struct {
   // Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
   // torque; 0, the default, draws nothing.
   float torque_noise;
-  // Viscous friction, N m s/rad; 0 or more. Default 0. This and the next two must be 0 in a batch.
-  acrobot_joints_t friction;
-  // Coulomb friction, N m; 0 or more. Default 0.
-  acrobot_joints_t coulomb;
+  // Viscous friction of the fixed joint, N m s/rad; 0 or more. Default 0. This and the next four
+  // must be 0 in a batch.
+  float damping1;
+  // As `damping1`, of the elbow.
+  float damping2;
+  // Coulomb friction of the fixed joint, N m; 0 or more. Default 0.
+  float coulomb1;
+  // As `coulomb1`, of the elbow.
+  float coulomb2;
   // What a geared rotor takes from the coupling of the links, kg m²; finite, and so small that the
   // mass matrix is positive definite. Default 0. A rotor of moment of inertia J, kg m², behind a
   // gear g in the elbow adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1) g J here.
@@ -226,13 +222,9 @@ typedef struct {
   float low;
   float high;
   float mean;
-  float standard_deviation;
+  // The standard deviation.
+  float std;
 } acrobot_draw_t;
-
-typedef struct {
-  acrobot_draw_t joint1;
-  acrobot_draw_t joint2;
-} acrobot_joint_draws_t;
 
 // How each parameter is drawn, in the order of acrobot_params_t. Zeros draw nothing.
 typedef struct {
@@ -250,8 +242,10 @@ typedef struct {
   acrobot_draw_t max_velocity2;
   acrobot_draw_t torques[3];
   acrobot_draw_t torque_noise;
-  acrobot_joint_draws_t friction;
-  acrobot_joint_draws_t coulomb;
+  acrobot_draw_t damping1;
+  acrobot_draw_t damping2;
+  acrobot_draw_t coulomb1;
+  acrobot_draw_t coulomb2;
   acrobot_draw_t rotor;
 } acrobot_draws_t;
 

@@ -78,13 +78,6 @@ impl From<acrobot_state_t> for State<f32> {
 
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct acrobot_joints_t {
-    pub joint1: f32,
-    pub joint2: f32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy)]
 pub struct acrobot_params_t {
     pub length1: f32,
     pub length2: f32,
@@ -100,21 +93,21 @@ pub struct acrobot_params_t {
     pub max_velocity2: f32,
     pub torques: [f32; 3],
     pub torque_noise: f32,
-    pub friction: acrobot_joints_t,
-    pub coulomb: acrobot_joints_t,
+    pub damping1: f32,
+    pub damping2: f32,
+    pub coulomb1: f32,
+    pub coulomb2: f32,
     pub rotor: f32,
     pub dynamics: c_int,
 }
 
 pub const ACROBOT_DRAW_FIXED: c_int = 0;
 
-pub const ACROBOT_DRAW_AS_BEFORE: c_int = 1;
+pub const ACROBOT_DRAW_UNIFORM: c_int = 1;
 
-pub const ACROBOT_DRAW_UNIFORM: c_int = 2;
+pub const ACROBOT_DRAW_LOG_UNIFORM: c_int = 2;
 
-pub const ACROBOT_DRAW_LOG_UNIFORM: c_int = 3;
-
-pub const ACROBOT_DRAW_NORMAL: c_int = 4;
+pub const ACROBOT_DRAW_NORMAL: c_int = 3;
 
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -123,14 +116,7 @@ pub struct acrobot_draw_t {
     pub low: f32,
     pub high: f32,
     pub mean: f32,
-    pub standard_deviation: f32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct acrobot_joint_draws_t {
-    pub joint1: acrobot_draw_t,
-    pub joint2: acrobot_draw_t,
+    pub std: f32,
 }
 
 #[repr(C)]
@@ -150,8 +136,10 @@ pub struct acrobot_draws_t {
     pub max_velocity2: acrobot_draw_t,
     pub torques: [acrobot_draw_t; 3],
     pub torque_noise: acrobot_draw_t,
-    pub friction: acrobot_joint_draws_t,
-    pub coulomb: acrobot_joint_draws_t,
+    pub damping1: acrobot_draw_t,
+    pub damping2: acrobot_draw_t,
+    pub coulomb1: acrobot_draw_t,
+    pub coulomb2: acrobot_draw_t,
     pub rotor: acrobot_draw_t,
 }
 
@@ -174,14 +162,13 @@ impl TryFrom<acrobot_draws_t> for Draws<f32> {
         let draws: [acrobot_draw_t; NUMBERS] = unsafe { transmute(draws) };
         let mut params = Draws::FIXED;
         for (to, draw) in params.numbers_mut().into_iter().zip(draws) {
-            let acrobot_draw_t { kind, low, high, mean, standard_deviation: std } = draw;
+            let acrobot_draw_t { kind, low, high, mean, std } = draw;
             *to = match kind {
                 ACROBOT_DRAW_FIXED => Draw::Fixed,
-                ACROBOT_DRAW_AS_BEFORE => Draw::AsBefore,
                 ACROBOT_DRAW_UNIFORM => Draw::Uniform { low, high },
                 ACROBOT_DRAW_LOG_UNIFORM => Draw::LogUniform { low, high },
                 ACROBOT_DRAW_NORMAL => Draw::Normal { mean, std, low, high },
-                _ => return Err(Rejected::number("kind", kind.into(), "", "from 0 to 4")),
+                _ => return Err(Rejected::number("kind", kind.into(), "", "from 0 to 3")),
             };
         }
         Ok(Self::new(params)?)

@@ -8,7 +8,7 @@
 
 static const acrobot_state_t REST = {0, 0, 0, 0}, UP = {3.14159f, 0, 0, 0}, FAR = {INF, 0, 0, 0};
 #define WITH_MASS1(mass1) \
-    {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, {0, 0}, {0, 0}, 0, 0}
+    {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, 0, 0, 0, 0, 0, 0}
 static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
 static acrobot_draws_t reversed; // by `main`
 static const acrobot_state_t ONES = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
@@ -264,9 +264,9 @@ static void arguments_of_an_acrobot(void)
     REJECTED(NULL, acrobot_set_state(acrobot, NULL, &error));
     REJECTED(NULL, acrobot_set_params(acrobot, NULL, &error));
     REJECTED(NULL, acrobot_draw_params(acrobot, NULL, &error));
-    draws.gravity.kind = 5;
-    expect_message(acrobot_draw_params(acrobot, &draws, &error), "kind must be from 0 to 4, got ");
-    CHECK(error.value == 5);
+    draws.gravity.kind = 4;
+    expect_message(acrobot_draw_params(acrobot, &draws, &error), "kind must be from 0 to 3, got ");
+    CHECK(error.value == 4);
     REJECTED(NULL, acrobot_deviation(acrobot, NULL, &x));
     REJECTED(OUT_OF_RANGE, acrobot_deviation(acrobot, &FAR, &x));
     REJECTED(NULL, acrobot_lqr(acrobot, NULL, &ONES, 1, &x, &error));
@@ -379,9 +379,9 @@ static void arguments_of_a_batch(void)
     REJECTED(NO_SUCH_INDEX, acrobot_batch_set_state_of(batch, COUNT, &REST, NULL));
     REJECTED(NULL, acrobot_batch_set_state_of(batch, 0, NULL, NULL));
     REJECTED(NULL, acrobot_batch_set_params(batch, NULL, NULL));
-    params.friction.joint2 = 1;
+    params.damping2 = 1;
     expect_message(acrobot_batch_set_params(batch, &params, &error),
-                   "friction.joint2 must be 0 unless the arithmetic is Damped, in N m s/rad, got ");
+                   "damping2 must be 0 unless the arithmetic is Damped, in N m s/rad, got ");
     CHECK(same(batch, saved, SIZE));
 }
 

@@ -13,7 +13,7 @@ static const acrobot_state_t HANGING = {0, 0, 0, 0}, MOVING = {.1f, -.2f, .3f, -
 // Each number is another one.
 static const acrobot_params_t PARAMS = {
     1.1f, 1.2f, 1.3f, 1.4f, .5f, .6f, .7f, .8f, 9.1f, .05f, 12, 13, {-2, .1f, 3}, 0,
-    {.01f, .02f}, {.03f, .04f}, .05f, ACROBOT_DYNAMICS_NIPS,
+    .01f, .02f, .03f, .04f, .05f, ACROBOT_DYNAMICS_NIPS,
 };
 
 static void an_acrobot(void)
@@ -67,7 +67,6 @@ static void a_batch(void)
     bool terminated[COUNT], truncated[COUNT];
     acrobot_observation_t rows[COUNT], first[COUNT];
     const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL};
-    const acrobot_joints_t none = {0, 0};
     acrobot_batch_t *batch;
     acrobot_t alone;
     acrobot_state_t state;
@@ -81,8 +80,7 @@ static void a_batch(void)
     ACCEPTED(acrobot_batch_set_state_of(batch, 1, &MOVING, NULL));
     ACCEPTED(acrobot_batch_state_of(batch, 1, &state));
     CHECK(same(&state, &MOVING, sizeof state));
-    params.friction = params.coulomb = none;
-    params.rotor = 0;
+    params.damping1 = params.damping2 = params.coulomb1 = params.coulomb2 = params.rotor = 0;
     ACCEPTED(acrobot_batch_set_params(batch, &params, NULL));
     ACCEPTED(acrobot_batch_params(batch, &set));
     CHECK(same(&set, &params, sizeof params));
@@ -126,15 +124,14 @@ static void drawn_parameters(void)
     acrobot_params_t params;
     draws.mass2 = mass2;
     draws.inertia1 = inertia1;
-    draws.inertia2.kind = ACROBOT_DRAW_AS_BEFORE;
     draws.gravity = gravity;
-    draws.coulomb.joint2 = dry;
+    draws.coulomb2 = dry;
     ACCEPTED(acrobot_init(&acrobot, 42));
     ACCEPTED(acrobot_draw_params(&acrobot, &draws, NULL));
     ACCEPTED(acrobot_params(&acrobot, &params));
     CHECK(params.mass1 == 1 && params.mass2 == .837671f && params.gravity == 9.766048f);
-    CHECK(params.inertia1 == 1.9335401f && params.inertia2 == params.inertia1);
-    CHECK(params.coulomb.joint1 == 0 && params.coulomb.joint2 == .1f && params.rotor == 0);
+    CHECK(params.inertia1 == 1.9335401f && params.inertia2 == 1);
+    CHECK(params.coulomb1 == 0 && params.coulomb2 == .1f && params.rotor == 0);
 }
 
 static void controllers(void)

@@ -9,10 +9,10 @@ import {
   bytes, checked, copied, integers, invalid, isNumber, numbers, positive, randomSeed, wasm,
 } from "./wasm.js";
 
-export const TASKS = ["acrobot", "swingup", "balance"];
+export const TASKS = ["gymnasium", "swingup", "balance"];
 export const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 /** The kinds of draws in the order of the module, with the count of their numbers. */
-const DRAWS = { fixed: 0, asBefore: 0, uniform: 2, logUniform: 2, normal: 4 };
+const DRAWS = { fixed: 0, uniform: 2, logUniform: 2, normal: 4 };
 
 export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 export const isAction = (action) => action === 0 || action === 1 || action === 2;
@@ -86,7 +86,7 @@ function readDraw(name, draw) {
   const index = Object.keys(DRAWS).indexOf(kind);
   if (index < 0 || given.length > 1) {
     const forms = "[low, high], { logUniform: [low, high] }, { normal: [mean, std, low, high] }";
-    throw invalid(`${name} must be drawn by ${forms}, "asBefore" or "fixed"`, draw, []);
+    throw invalid(`${name} must be drawn by ${forms} or "fixed"`, draw, []);
   }
   return [index, ...elements(name, array, DRAWS[kind], isNumber, "must be a number")];
 }

@@ -33,9 +33,9 @@ export interface State {
 
 /**
  * The parameters, rounded to single precision. The lengths, masses, torque noise and `dynamics` of
- * a swing-up have the defaults below, the others those of dm_control. The task `"balance"` has
+ * a swing-up have the defaults below, the others those of dm_control. The task "balance" has
  * other defaults for `dt`, 0.02, and `torques`, [-10, 0, 10]. Friction and `rotor` are 0 by
- * default, and must be in "acrobot".
+ * default, and must be 0 in the task "gymnasium".
  */
 export interface Params {
   /** Length of link 1, m; above 0. Default: 1. */
@@ -68,10 +68,10 @@ export interface Params {
   torqueNoise: number;
   /** Equations of the book or of the NIPS paper: Gymnasium's `book_or_nips`. Default: "book". */
   dynamics: "book" | "nips";
-  /** Friction of the fixed joint, N m s/rad; 0 or more. */
-  friction1: number;
-  /** Friction between the links, N m s/rad; 0 or more. */
-  friction2: number;
+  /** Viscous friction of the fixed joint, N m s/rad; 0 or more. */
+  damping1: number;
+  /** Viscous friction between the links, N m s/rad; 0 or more. */
+  damping2: number;
   /** Coulomb friction of the fixed joint, N m; 0 or more. */
   coulomb1: number;
   /** Coulomb friction between the links, N m; 0 or more. */
@@ -83,15 +83,13 @@ export interface Params {
 /**
  * How a reset draws a number, in the parameter's unit: uniformly from [low, high], with its
  * logarithm uniform, with a low above 0, or from a normal distribution that is truncated at the
- * bounds, by [mean, standard deviation, low, high]. Equal bounds draw nothing. "asBefore" is the
- * number of the parameter before it in `Params`: `inertia2` is `inertia1`.
+ * bounds, by [mean, standard deviation, low, high]. Equal bounds draw nothing.
  */
 export type Draw =
   | readonly [low: number, high: number]
   | { readonly uniform: readonly [low: number, high: number] }
   | { readonly logUniform: readonly [low: number, high: number] }
   | { readonly normal: readonly [mean: number, std: number, low: number, high: number] }
-  | "asBefore"
   | "fixed";
 
 /** What a reset draws of the parameters, in their order. Others, and "fixed" ones, stay. */
@@ -100,11 +98,11 @@ export type Draws = {
 } & { readonly torques?: readonly [Draw, Draw, Draw] };
 
 /**
- * Gymnasium's task, or one that no state ends, with rewards from 0 to 1 and other parameters:
+ * "gymnasium", or a task that no state ends, with rewards from 0 to 1 and other parameters:
  * "swingup", dm_control's `acrobot-swingup`, from rest anywhere to upright in 1000 steps, or
  * "balance", to stay upright for 500, with the reward (2 − cos θ1 − cos(θ1 + θ2)) / 4.
  */
-export type Task = "acrobot" | "swingup" | "balance";
+export type Task = "gymnasium" | "swingup" | "balance";
 
 export interface Options {
   /** The seed of the first initial state and all later random numbers. Default: random. */
@@ -113,7 +111,7 @@ export interface Options {
   params?: Readonly<Partial<Params>>;
   /** The number of steps that truncates an episode, from 1 to 2^32 − 1. Default: 500. */
   maxSteps?: number;
-  /** Default: "acrobot". */
+  /** Default: "gymnasium". */
   task?: Task;
   /** As `setDraws`. Default: none. */
   draws?: Draws;

@@ -99,7 +99,7 @@ export function accept(kind, given) {
   if (kind === 3) throw invalid(shared, false, ["boolean"]);
   const [value] = numbers();
   const name = camelCase(text(1));
-  const friction = `0 in the task "acrobot", in ${text(5)}`;
+  const friction = `0 in the task "gymnasium", in ${text(5)}`;
   const rule = text(3).startsWith("0 unless") ? friction : `${text(3)} ${text(5)}`;
   // What the caller gave, before it was rounded.
   const all = [given[name], given[`${name}[0]`], given[`${name}[1]`]].flat();

@@ -71,7 +71,7 @@ export function decoded(utf8) {
 
 /** JavaScript's name of a parameter. */
 export const camelCase = (name) =>
-  name.replace(".joint", "").replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
+  name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
 
 export const tagOf = (value) => Object.prototype.toString.call(value);
 

@@ -33,9 +33,8 @@ pub fn get_draws() -> Result<Draws<f32>, Error> {
         let [kind, a, b, low, high] = *row;
         *draw = match kind as u32 {
             0 => Draw::Fixed,
-            1 => Draw::AsBefore,
-            2 => Draw::Uniform { low: a, high: b },
-            3 => Draw::LogUniform { low: a, high: b },
+            1 => Draw::Uniform { low: a, high: b },
+            2 => Draw::LogUniform { low: a, high: b },
             _ => Draw::Normal { mean: a, std: b, low, high },
         };
     }

@@ -48,7 +48,7 @@ test("parameters act as natively", () => {
   const names = Object.keys(acrobot.params);
   const numbers = Object.fromEntries(names.map((name, i) => [name, i + 0.5]));
   const others = { torques: [-3, 0.25, 4], dynamics: "nips", gravity: -0 };
-  const none = { friction1: 0, friction2: 0, coulomb1: 0, coulomb2: 0, rotor: 0 };
+  const none = { damping1: 0, damping2: 0, coulomb1: 0, coulomb2: 0, rotor: 0 };
   const params = { ...numbers, ...others, ...none };
   acrobot.setParams(params);
   assert.deepEqual(acrobot.params, params);

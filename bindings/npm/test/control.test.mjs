@@ -85,7 +85,7 @@ test("without a plan, the torque pumps energy and then holds", () => {
 
 test("a regulator has the gain with which a planner holds, in both tasks", () => {
   const none = { states: [], torques: [], gains: [] };
-  for (const task of ["acrobot", "swingup"]) {
+  for (const task of ["gymnasium", "swingup"]) {
     const { params } = new Acrobot({ task, params: { dt: 0.02, mass2: 1.5 } });
     // The planner's weights are 1 in the units of the machine: its torque, and a time T.
     const [limit, { mass1, mass2 }] = [2, params];

@@ -77,7 +77,7 @@ const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
 const DRAW =
   "mass1 must be drawn by [low, high], { logUniform: [low, high] }, " +
-  '{ normal: [mean, std, low, high] }, "asBefore" or "fixed"';
+  '{ normal: [mean, std, low, high] } or "fixed"';
 
 test("other arguments are rejected with the value and the rule, and nothing changes", () => {
   const acrobot = new Acrobot({ seed: 1 });
@@ -96,8 +96,8 @@ test("other arguments are rejected with the value and the rule, and nothing chan
     ["TypeError", `action ${ACTION}`,
       ["1", () => acrobot.step(1n)], ['"1"', () => acrobot.step("1")]],
     ["TypeError", "torque must be a finite number of N m", ['"1"', () => acrobot.stepTorque("1")]],
-    ["RangeError", 'friction1 must be 0 in the task "acrobot", in N m s/rad',
-      ["0.1", set({ friction1: 0.1 })], ["0.2", draw({ friction1: [0, 0.2] })]],
+    ["RangeError", 'damping1 must be 0 in the task "gymnasium", in N m s/rad',
+      ["0.1", set({ damping1: 0.1 })], ["0.2", draw({ damping1: [0, 0.2] })]],
     ["TypeError", "mass1[1] must be a number", ['"2"', draw({ mass1: [1, "2"] })]],
     ["TypeError", DRAW, ["null", draw({ mass1: null })]],
     ["RangeError", "mass1 must have 2 elements", ["3", draw({ mass1: [1, 2, 3] })]],
@@ -116,7 +116,7 @@ test("other arguments are rejected with the value and the rule, and nothing chan
       ["4294967296", make({ maxSteps: 2 ** 32 })]],
     ["TypeError", "options must be among seed, params, maxSteps, task, draws",
       ["count", make({ count: 1 })]],
-    ["TypeError", 'task must be "acrobot" or "swingup" or "balance"', ["1", make({ task: 1 })]],
+    ["TypeError", 'task must be "gymnasium" or "swingup" or "balance"', ["1", make({ task: 1 })]],
     ["TypeError", "context must be a canvas's 2D context", ["undefined", () => acrobot.draw()]],
     ["RangeError", "options.size must be finite and at least 0 pixels", ["NaN", picture()]],
     ["RangeError", "actions must have 3 elements", ["2", step(new Uint8Array(2))]],

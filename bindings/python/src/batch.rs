@@ -30,7 +30,7 @@ pub struct Batch {
 impl Batch {
     #[new]
     #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed=None, max_episode_steps=NonZeroU32::MAX,
-        mode="NextStep", kind=("acrobot", "float32"), continuous=false, threads=NonZeroU32::MIN))]
+        mode="NextStep", kind=("gymnasium", "float32"), continuous=false, threads=NonZeroU32::MIN))]
     fn new(
         num_envs: NonZeroU32,
         seed: Option<Bound<'_, PyAny>>,

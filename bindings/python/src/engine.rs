@@ -10,12 +10,14 @@ use acrobot::{Acrobot, Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
-use pyo3::exceptions::PyMemoryError;
+use pyo3::exceptions::{PyMemoryError, PyTypeError};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::task::AnyTask;
-use crate::{InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, with};
+use crate::{
+    InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, shown, with,
+};
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
 #[derive(FromPyObject)]
@@ -46,7 +48,7 @@ pub enum Engine {
     Float32(Many<Damped<Fast>>),
     Float64(Many<Damped<Reference>>),
     /// Computes as Gymnasium does.
-    Gymnasium(Many<Damped<Host>>),
+    Host(Many<Damped<Host>>),
 }
 
 impl Engine {
@@ -58,7 +60,7 @@ impl Engine {
     ) -> Result<Self, Error> {
         Ok(match arithmetic {
             "float64" => Self::Float64(Many::new(task, len, seed)?),
-            "gymnasium" => Self::Gymnasium(Many::new(task, len, seed)?),
+            "host" => Self::Host(Many::new(task, len, seed)?),
             _ => Self::Float32(Many::new(task, len, seed)?),
         })
     }
@@ -70,7 +72,7 @@ macro_rules! with_batch {
         match $engine {
             $crate::engine::Engine::Float32($many) => $result,
             $crate::engine::Engine::Float64($many) => $result,
-            $crate::engine::Engine::Gymnasium($many) => $result,
+            $crate::engine::Engine::Host($many) => $result,
         }
     };
 }
@@ -160,18 +162,9 @@ impl<A: Arithmetic> Many<A> {
         Ok(())
     }
 
-    /// The draws, of which one is to change. That of `LINK_MOI` becomes one of each link.
-    fn draws_beside(&self, name: &str) -> Params<Draw<A::Scalar>> {
-        let mut draws = *self.batch.draws().params();
-        if name == "LINK_MOI_1" && draws.inertia2 == Draw::<A::Scalar>::AsBefore {
-            draws.inertia2 = draws.inertia1;
-        }
-        draws
-    }
-
     /// Sets a parameter of all acrobots to a value from Python, or to a value for each.
     pub fn set(&mut self, name: &str, values: &[Bound<'_, PyAny>]) -> PyResult<()> {
-        let mut draws = self.draws_beside(name);
+        let mut draws = *self.batch.draws().params();
         places(name).for_each(|place| *draws.numbers_mut()[place] = Draw::Fixed);
         let draws = Draws::new(draws).map_err(rejected)?;
         let is_own = values.len() > 1 || self.batch.has_own_params();
@@ -200,6 +193,10 @@ impl<A: Arithmetic> Many<A> {
 
     /// Sets a parameter that each reset draws.
     pub fn set_drawn(&mut self, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
+        if name == "LINK_MOI" {
+            let rule = "a number; a reset can draw LINK_MOI_1 and LINK_MOI_2";
+            return Err(PyTypeError::new_err(must_be(name, rule, shown(drawn))));
+        }
         let kind = drawn.get_type().name()?.to_string();
         let numbers: &[&str] = match kind.as_str() {
             "Normal" => &["low", "high", "mean", "std"],
@@ -209,7 +206,7 @@ impl<A: Arithmetic> Many<A> {
             with::<A::Scalar>(Params::DEFAULT, Name(name, [None; 2]), &drawn.getattr(number)?)
         });
         let given = given.collect::<PyResult<Vec<_>>>()?;
-        let mut draws = self.draws_beside(name);
+        let mut draws = *self.batch.draws().params();
         for place in places(name) {
             let number = |i: usize| A::Scalar::from_f64(given[i].numbers()[place].1);
             let (low, high) = (number(0), number(1));
@@ -218,9 +215,6 @@ impl<A: Arithmetic> Many<A> {
                 "LogUniform" => Draw::LogUniform { low, high },
                 _ => Draw::Uniform { low, high },
             };
-        }
-        if name == "LINK_MOI" {
-            draws.inertia2 = Draw::AsBefore;
         }
         let rejected = |error| invalid(error, None);
         let draws = Draws::new(draws).map_err(rejected)?;

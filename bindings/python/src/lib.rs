@@ -84,8 +84,8 @@ const NAMES: [&str; 21] = [
     "AVAIL_TORQUE",
     "AVAIL_TORQUE",
     "torque_noise_max",
-    "FRICTION_1",
-    "FRICTION_2",
+    "DAMPING_1",
+    "DAMPING_2",
     "COULOMB_1",
     "COULOMB_2",
     "ROTOR",
@@ -222,7 +222,7 @@ fn render<'py>(
 }
 
 /// Changes when a snapshot of another layout would be read.
-const SNAPSHOT_VERSION: u8 = 5;
+const SNAPSHOT_VERSION: u8 = 6;
 
 /// Serializes a snapshot, for pickle.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {

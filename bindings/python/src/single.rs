@@ -109,7 +109,7 @@ impl Acrobot {
 #[pymethods]
 impl Acrobot {
     #[new]
-    #[pyo3(signature = (continuous = false, task = "acrobot"))]
+    #[pyo3(signature = (continuous = false, task = "gymnasium"))]
     fn new(continuous: bool, task: &str) -> Self {
         let acrobot = One::new(task);
         let torques = acrobot.params().torques.into();

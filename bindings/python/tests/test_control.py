@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from scipy.differentiate import jacobian
 
 PARAMS = {"LINK_MASS_1": 1.3, "dt": 0.05, "AVAIL_TORQUE": (-1.0, 0.0, 1.0)}
-ENV = acrobot_rs.AcrobotSwingupEnv(FRICTION_1=0.2, LINK_MOI_1=0.3, **PARAMS)
+ENV = acrobot_rs.AcrobotSwingupEnv(DAMPING_1=0.2, LINK_MOI_1=0.3, **PARAMS)
 ONE = np.eye(4)
 
 
@@ -90,7 +90,7 @@ def test_errors_say_what_is_valid(function, arguments, message):
 
 
 def test_a_plan_swings_an_environment_up_from_a_nearby_state():
-    env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, FRICTION_1=0.1, AVAIL_TORQUE=(-8, 0, 8))
+    env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, DAMPING_1=0.1, AVAIL_TORQUE=(-8, 0, 8))
     planner = control.Planner(6.0, env)
     plan = planner.plan([0, 0, 0, 0], steps=250)
     env.reset(options={"state": [0.05, -0.05, 0.1, 0.1]})
@@ -105,7 +105,7 @@ def test_a_plan_swings_an_environment_up_from_a_nearby_state():
 
 
 def test_a_plan_has_the_bits_of_rust():
-    env = acrobot_rs.AcrobotEnv(dt=0.02, FRICTION_1=0.1, MAX_VEL_1=4)
+    env = acrobot_rs.AcrobotEnv(dt=0.02, DAMPING_1=0.1, MAX_VEL_1=4)
     weights = {"torque": 0.2, "torque_change": 0.1, "power": 0.3, "below": 3, "height": 1.9}
     weights |= {"margin": 0.3, "arrival": 10, "angles": (0.1, 0.2), "velocities": (0.01, 0.02)}
     planner = control.Planner(12, env, clamps=True, **weights)

@@ -80,4 +80,4 @@ class TestInterface(test_utils.EnvironmentTestMixin, absltest.TestCase):
     """dm_env's own checks."""
 
     def make_object_under_test(self):
-        return dm_control.load("acrobot", "swingup", {"time_limit": 1}, {"FRICTION_1": 0.1})
+        return dm_control.load("acrobot", "swingup", {"time_limit": 1}, {"DAMPING_1": 0.1})

@@ -47,7 +47,7 @@ def test_specs_and_parameters_make_the_same_environment_again(name):
         assert twin.unwrapped._native.__getstate__() == native
     draws = {"dt": LogUniform(0.1, 0.2), "gravity": Normal(9.8, 0.1, 9.0, 10.0)}
     draws["AVAIL_TORQUE"] = Uniform([-2, 0, 1], [-1, 0, 2])
-    draws |= {"FRICTION_2": Uniform(0.0, 0.1), "LINK_MOI_2": Uniform(0.9, 1.1)}
+    draws |= {"DAMPING_2": Uniform(0.0, 0.1), "LINK_MOI_2": Uniform(0.9, 1.1)}
     envs = make(name, LINK_MASS_1=[1, 2, 3], max_episode_steps=7, **draws)
     for twin in (gymnasium.make_vec(envs.spec), type(envs)(3, 7, **envs.parameters)):
         assert (twin.reset(seed=1)[0] == envs.reset(seed=1)[0]).all()

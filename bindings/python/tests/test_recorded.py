@@ -24,15 +24,14 @@ def test_draws_are_those_of_numpy(children):
     envs = AcrobotVectorEnv(
         *(len(rows), 2, None, "SameStep"),
         LINK_MASS_2=acrobot_rs.Uniform(0.8, 1.2),
-        LINK_MOI=acrobot_rs.LogUniform(0.5, 2.0),
+        LINK_MOI_1=acrobot_rs.LogUniform(0.5, 2.0),
         gravity=acrobot_rs.Normal(9.8, 0.1, low=9.5, high=10.1),
     )
 
     def drawn(envs):
-        """LINK_MOI of both links."""
-        names = "LINK_MASS_2", "LINK_MOI", "gravity"
-        columns = [envs._native.get(name).reshape(len(rows), -1) for name in names]
-        return np.hstack([*columns, envs.state]).astype(np.float32)
+        names = "LINK_MASS_2", "LINK_MOI_1", "gravity"
+        columns = [envs.get_parameter(name) for name in names]
+        return np.column_stack([*columns, envs.state]).astype(np.float32)
 
     envs.reset(seed=42 if children else [int(row[0]) for row in rows])
     first = drawn(envs)

@@ -9,7 +9,7 @@ from acrobot_rs import AcrobotBalanceVectorEnv, AcrobotContinuousVectorEnv, Acro
 from acrobot_rs import AcrobotSwingupVectorEnv, AcrobotVectorEnv, LogUniform, Normal, Uniform
 from vectors import SINGLE_KINDS, rejects
 
-DRAWN = {"FRICTION_1": np.linspace(0, 0.1, 37), "LINK_MOI_2": Uniform(0.1, 0.2)}
+DRAWN = {"DAMPING_1": np.linspace(0, 0.1, 37), "LINK_MOI_2": Uniform(0.1, 0.2)}
 OWN = {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)}
 #: Vector environments: the type, the mode, the noise and other arguments.
 VECTOR = (

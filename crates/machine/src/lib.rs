@@ -119,8 +119,10 @@ pub fn realaigym() -> Params {
         dt: 0.002,
         max_velocity1: f64::INFINITY,
         max_velocity2: f64::INFINITY,
-        friction: acrobot::physics::Joints { joint1: 0.001, joint2: 0.001 },
-        coulomb: acrobot::physics::Joints { joint1: 0.16, joint2: 0.12 },
+        damping1: 0.001,
+        damping2: 0.001,
+        coulomb1: 0.16,
+        coulomb2: 0.12,
         ..Params::DEFAULT
     }
     .with_inertias_about_joints([0.031887199591513114, 0.05086984812807257])

@@ -58,7 +58,7 @@ pub fn train<const S: usize, const T: usize>(
 pub struct Returns {
     pub mean: f64,
     /// The standard deviation.
-    pub sd: f64,
+    pub std: f64,
     /// Episodes that were truncated before the goal.
     pub misses: u32,
 }
@@ -79,5 +79,5 @@ pub fn evaluate(
     }
     let n = f64::from(episodes);
     let mean = sum / n;
-    Returns { mean, sd: (squares / n - mean * mean).max(0.0).sqrt(), misses }
+    Returns { mean, std: (squares / n - mean * mean).max(0.0).sqrt(), misses }
 }

@@ -79,7 +79,7 @@ export class Game {
       }
     }
     const torques = [-torque, 0, torque];
-    this.acrobot.setParams({ ...others, torques, friction1: friction, friction2: friction });
+    this.acrobot.setParams({ ...others, torques, damping1: friction, damping2: friction });
     this.params = params;
   }
 

@@ -97,9 +97,9 @@ pub struct ParameterStd<S = f64> {
     pub inertia2: S,
     /// Of the viscous friction of joint 1, N m s/rad. This and the following ones must be 0 in an
     /// arithmetic without friction.
-    pub friction1: S,
+    pub damping1: S,
     /// Of the viscous friction of joint 2, N m s/rad.
-    pub friction2: S,
+    pub damping2: S,
     /// Of the Coulomb friction of joint 1, N m.
     pub coulomb1: S,
     /// Of the Coulomb friction of joint 2, N m.
@@ -129,9 +129,9 @@ impl<A: Arithmetic> ParameterEstimator<A> {
         noise: Noise<A::Scalar>,
     ) -> Result<Self, Error> {
         let ParameterStd { mass1, mass2, length1, inertia1, inertia2, rotor, .. } = std;
-        let ParameterStd { friction1, friction2, coulomb1, coulomb2, .. } = std;
+        let ParameterStd { damping1, damping2, coulomb1, coulomb2, .. } = std;
         let std = [
-            mass1, mass2, length1, inertia1, inertia2, friction1, friction2, coulomb1, coulomb2,
+            mass1, mass2, length1, inertia1, inertia2, damping1, damping2, coulomb1, coulomb2,
             rotor,
         ];
         let given = estimated(params.numbers());

@@ -9,7 +9,7 @@ use core::array::from_fn;
 use crate::error::{Error, Range};
 use crate::math::Real;
 use crate::math::matrix::check_finite;
-use crate::physics::{Joints, Params, WIDTH};
+use crate::physics::{Params, WIDTH};
 
 /// The numbers that a motion tells.
 const N: usize = 10;
@@ -262,16 +262,8 @@ impl Fit {
     /// the moments m1 lc1 + m2 l1 and m2 lc2, kg m; the coupling m2 l1 lc2, kg m²; viscous
     /// friction, N m s/rad; Coulomb friction, N m.
     pub const NAMES: [&str; N] = [
-        "mass11",
-        "mass12",
-        "mass22",
-        "moment1",
-        "moment2",
-        "coupling",
-        "friction1",
-        "friction2",
-        "coulomb1",
-        "coulomb2",
+        "mass11", "mass12", "mass22", "moment1", "moment2", "coupling", "damping1", "damping2",
+        "coulomb1", "coulomb2",
     ];
 
     /// The parameters: those of `given` with the length of link 1, masses, inertias, rotor and
@@ -296,8 +288,10 @@ impl Fit {
             length1,
             mass1: (moment1 - mass2 * length1) / given.center_of_mass1,
             mass2,
-            friction: Joints { joint1: b1, joint2: b2 },
-            coulomb: Joints { joint1: c1, joint2: c2 },
+            damping1: b1,
+            damping2: b2,
+            coulomb1: c1,
+            coulomb2: c2,
             rotor: mass22 - mass12,
             ..given
         };

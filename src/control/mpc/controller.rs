@@ -42,8 +42,8 @@ impl Settings {
             mass2: DOUBT * mass2,
             inertia1: DOUBT * (self.params.inertia1 + mass1 * (lc1 * lc1)),
             inertia2: DOUBT * (self.params.inertia2 + mass2 * (lc2 * lc2)),
-            friction1: viscous,
-            friction2: viscous,
+            damping1: viscous,
+            damping2: viscous,
             coulomb1: coulomb,
             coulomb2: coulomb,
             ..ParameterStd::default()

@@ -12,7 +12,7 @@ use crate::error::{Error, Range};
 use crate::math::Real;
 use crate::math::matrix::Matrix;
 use crate::math::sealed::Sealed as _;
-use crate::physics::{Joints, Params, Pendulum, State, plus_scaled, saturate};
+use crate::physics::{Params, Pendulum, State, plus_scaled, saturate};
 
 /// The regulator has failed beyond these deviations of θ1 and θ2, rad.
 const WIDE: [f64; 2] = [FRAC_PI_2, 3.1];
@@ -110,9 +110,10 @@ impl<A: Arithmetic> BoundedRegulator<A> {
         )?;
         check_equilibrium(&machine, torque)?;
         let units = Units::new(&params, spare);
-        let none = Joints { joint1: A::Scalar::ZERO, joint2: A::Scalar::ZERO };
-        let is_dry = params.coulomb != none;
-        let free = Pendulum::<A>::new(Params { coulomb: none, ..params }, target)?;
+        let none = A::Scalar::ZERO;
+        let is_dry = [params.coulomb1, params.coulomb2] != [none; 2];
+        (params.coulomb1, params.coulomb2) = (none, none);
+        let free = Pendulum::<A>::new(params, target)?;
         let far = f64::INFINITY;
         let design = Design::new(&free.linearize_step(torque)?, units, [LINEAR, far, far, far])?;
         if design.roughness(PI, params.dt) > if is_dry { ROUGH_DRY } else { ROUGH } {

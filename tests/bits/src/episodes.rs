@@ -3,7 +3,6 @@
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::Joints;
 use acrobot::task::{Draw, Draws, Gymnasium, Task};
 use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
 
@@ -70,9 +69,8 @@ pub fn subnormal<A: Arithmetic>() -> u64 {
 
 /// Every bit of 200 steps with friction.
 pub fn damped<A: Arithmetic>() -> u64 {
-    let [joint1, joint2] = [0.1, 0.05].map(A::Scalar::from_f64);
     steps(Acrobot::<A>::new(0), |params| {
-        params.friction = Joints { joint1, joint2 };
+        [params.damping1, params.damping2] = [0.1, 0.05].map(A::Scalar::from_f64);
     })
 }
 

@@ -39,8 +39,8 @@ DEVIATIONS = {
     "LINK_MASS_2": 0.2 * MASS2,
     "LINK_MOI_1": 0.2 * INERTIA1,
     "LINK_MOI_2": 0.2 * INERTIA2,
-    "FRICTION_1": 0.03,
-    "FRICTION_2": 0.03,
+    "DAMPING_1": 0.03,
+    "DAMPING_2": 0.03,
     "COULOMB_1": 0.08,
     "COULOMB_2": 0.08,
 }

@@ -63,10 +63,10 @@ fn estimates_are_those_of_machines() {
                 length1: params.length1,
                 inertia1: params.inertia1,
                 inertia2: params.inertia2,
-                friction1: params.friction.joint1,
-                friction2: params.friction.joint2,
-                coulomb1: params.coulomb.joint1,
-                coulomb2: params.coulomb.joint2,
+                damping1: params.damping1,
+                damping2: params.damping2,
+                coulomb1: params.coulomb1,
+                coulomb2: params.coulomb2,
                 rotor: A::Scalar::from_f64(params.rotor.to_f64().abs()),
             };
             let mut of_params = ParameterEstimator::<A>::new(params, std, noise).unwrap();

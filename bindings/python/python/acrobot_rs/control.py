@@ -298,7 +298,7 @@ class Animation:
 
 _GYMNASIUM = AcrobotEnv()
 _ESTIMATED = {"LINK_LENGTH_1", "ROTOR"} | {
-    f"{name}_{link}" for name in ("LINK_MASS", "LINK_MOI", "FRICTION", "COULOMB") for link in (1, 2)
+    f"{name}_{link}" for name in ("LINK_MASS", "LINK_MOI", "DAMPING", "COULOMB") for link in (1, 2)
 }
 #: The last axes of inputs. Others have 4, and ``torques`` any number.
 _AXES = {"torque": (), "accelerations": (2,), "A": (4, 4), "B": (4, 1), "Q": (4, 4), "R": (1, 1)}

@@ -80,8 +80,8 @@ class Parameters:
     torque_noise_max: Any = 0.0
     #: The equations of motion: of Sutton and Barto's book, or as printed in the 1996 paper.
     book_or_nips: Any = "book"
-    FRICTION_1: Any = 0.0  #: viscous, of the fixed joint, N m s/rad; 0 or more
-    FRICTION_2: Any = 0.0  #: viscous, of the joint between the links, N m s/rad; 0 or more
+    DAMPING_1: Any = 0.0  #: viscous, of the fixed joint, N m s/rad; 0 or more
+    DAMPING_2: Any = 0.0  #: viscous, of the joint between the links, N m s/rad; 0 or more
     COULOMB_1: Any = 0.0  #: Coulomb friction of the fixed joint, N m; 0 or more
     COULOMB_2: Any = 0.0  #: Coulomb friction of the joint between the links, N m; 0 or more
     ROTOR: Any = 0.0  #: what a geared rotor takes from the links' coupling, kg m²; finite
@@ -93,7 +93,7 @@ class Parameters:
     #: The names of the parameters.
     _NAMES: tuple[str, ...] = ()
     #: The task, by its name in Rust.
-    _TASK = "acrobot"
+    _TASK = "gymnasium"
     #: The default bound of initial states, rad and rad/s.
     _BOUND: float = BOUND
     #: Whether actions are numbers in a ``Box``, and what they are.

@@ -25,8 +25,8 @@ class Swingup(Parameters):
     LINK_MOI = None
     LINK_MOI_1: Any = 0.09557031250000002
     LINK_MOI_2: Any = 0.09530365719649563
-    FRICTION_1: Any = 0.05
-    FRICTION_2: Any = 0.05
+    DAMPING_1: Any = 0.05
+    DAMPING_2: Any = 0.05
     gravity: Any = 9.81
     dt: Any = 0.01
     MAX_VEL_1: Any = 1e30

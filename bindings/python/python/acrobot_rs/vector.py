@@ -88,14 +88,14 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         for name, count in counts.items():
             arrays.integer(name, count, 1, 2**32 - 1)
         if gymnasium_episodes:
-            if self._TASK != "acrobot":
+            if self._TASK != "gymnasium":
                 raise must_be("gymnasium_episodes", "False in another task", True)
             if float64:
                 rule = "False with gymnasium_episodes, which computes in float64"
                 raise must_be("float64", rule, True)
             arrays.warn_of_other_sines()
         mode = AutoresetMode(autoreset_mode)
-        arithmetic = "gymnasium" if gymnasium_episodes else "float64" if float64 else "float32"
+        arithmetic = "host" if gymnasium_episodes else "float64" if float64 else "float32"
         native = Batch(
             *(num_envs, self.np_random_seed, limit, mode.value, (self._TASK, arithmetic)),
             *(self._CONTINUOUS, threads),

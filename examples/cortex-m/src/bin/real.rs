@@ -10,7 +10,6 @@ use core::cell::RefCell;
 use acrobot::arithmetic::Damped;
 
 use acrobot::control::mpc::{Controller, Replanner, Settings};
-use acrobot::physics::Joints;
 use acrobot::{Error, Fast, Params};
 use acrobot_cortex_m::ram;
 use cortex_m::peripheral::syst::SystClkSource;
@@ -44,8 +43,8 @@ static REAL: Mutex<RefCell<Option<Real>>> = Mutex::new(RefCell::new(None));
 
 fn start() -> Result<Replanner<100>, Error> {
     let machine = Machine::new(realaigym(), COUNTS, 0, NOISE, 1)?;
-    let (friction, coulomb) = (Joints::default(), Joints::default());
-    let params = Params { friction, coulomb, ..machine.params() };
+    let (damping1, damping2, coulomb1, coulomb2) = (0.0, 0.0, 0.0, 0.0);
+    let params = Params { damping1, damping2, coulomb1, coulomb2, ..machine.params() };
     let settings = Settings { params: params.cast(), limit: 6.0, counts: COUNTS, ticks: 5 };
     let controller = Controller::new(settings)?;
     let real = Real { machine, controller, ticks: 0, upright: [0; 2], slowest: 0 };

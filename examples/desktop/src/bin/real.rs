@@ -14,7 +14,6 @@ use acrobot::arithmetic::Damped;
 use acrobot::control::identify::{Regression, Sample};
 use acrobot::control::mpc::{Controller, Replanner, Settings};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::Joints;
 use acrobot::{Error, Params, Portable};
 use clap::Parser;
 use machine::{Machine, realaigym};
@@ -114,7 +113,8 @@ fn main() -> anyhow::Result<()> {
         ("the true one", |truth, _| Ok(truth)),
         ("identified", identified),
         ("without friction", |truth, _| {
-            Ok(Params { friction: Joints::default(), coulomb: Joints::default(), ..truth })
+            let (damping1, damping2, coulomb1, coulomb2) = (0.0, 0.0, 0.0, 0.0);
+            Ok(Params { damping1, damping2, coulomb1, coulomb2, ..truth })
         }),
     ];
     for (name, model) in models {

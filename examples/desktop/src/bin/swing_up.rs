@@ -5,7 +5,7 @@
 //! cargo run --release -p desktop --bin swing_up -- --steps 0 --load weights.bin
 //! ```
 //!
-//! With `--quiet` it prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the
+//! With `--quiet` it prints one line, `solved_at E greedy_mean R greedy_std S misses K`: E is the
 //! first n ≥ 100 for which the mean return of episodes n − 99 to n is −100 or better. R and S are
 //! the mean and standard deviation of 1,000 greedy episodes from initial states that it was not
 //! trained on, and K of these missed the goal. The time of learning goes to stderr.
@@ -84,16 +84,16 @@ fn run<const S: usize, const T: usize, const N: usize>(
     let solved_at = returns.windows(LATEST).position(is_solved);
     let solved_at = solved_at.map_or("never".into(), |n| (n + LATEST).to_string());
     if options.quiet {
-        let Returns { mean, sd, misses } = learnt;
+        let Returns { mean, std, misses } = learnt;
         eprintln!("learnt in {seconds:.2} s");
-        println!("solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}");
+        println!("solved_at {solved_at} greedy_mean {mean:.2} greedy_std {std:.2} misses {misses}");
         return Ok(());
     }
     let mut actions = Pcg64::from(seed.child(2));
     println!("solved at episode: {solved_at}\n");
     println!("policy              mean return of {EVALUATION} episodes  missed the goal");
-    let row = |name: &str, Returns { mean, sd, misses }: Returns| {
-        println!("{name:<18}  {mean:>19.2} ± {sd:<9.2}  {misses:>15}");
+    let row = |name: &str, Returns { mean, std, misses }: Returns| {
+        println!("{name:<18}  {mean:>19.2} ± {std:<9.2}  {misses:>15}");
     };
     row("learnt", learnt);
     row("torque against θ̇1", evaluate(seed, EVALUATION, |state| bang_bang(state.dtheta1)));

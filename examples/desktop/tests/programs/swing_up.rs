@@ -10,7 +10,7 @@ impl Folder {
         let words: Vec<&str> = line.split_whitespace().collect();
         assert_eq!(
             [0, 2, 4, 6].map(|i| words[i]),
-            ["solved_at", "greedy_mean", "greedy_sd", "misses"]
+            ["solved_at", "greedy_mean", "greedy_std", "misses"]
         );
         [1, 3, 5, 7].map(|i| words[i].parse().ok())
     }
@@ -20,16 +20,16 @@ impl Folder {
 fn swing_up_learns_and_loads_what_it_saved() {
     let folder = Folder::new("learns");
     let figures = folder.figures("--episodes 300 --seed 1 --save one");
-    let [solved_at, mean, sd, misses] = figures.map(Option::unwrap);
+    let [solved_at, mean, std, misses] = figures.map(Option::unwrap);
     assert!((100.0..=150.0).contains(&solved_at) && misses == 0.0, "{figures:?}");
-    assert!(mean > -100.0 && sd > 0.0, "{figures:?}");
+    assert!(mean > -100.0 && std > 0.0, "{figures:?}");
     let weights = folder.read("one");
     folder.figures("--episodes 300 --seed 2 --save other");
     assert!(folder.read("other") != weights, "the seed must change the weights");
 
     // Loaded weights give the same figures, and are saved unchanged.
     let loaded = folder.figures("--episodes 0 --seed 1 --load one --save again");
-    assert_eq!(loaded, [None, Some(mean), Some(sd), Some(misses)]);
+    assert_eq!(loaded, [None, Some(mean), Some(std), Some(misses)]);
     assert!(folder.read("again") == weights);
 }
 

@@ -146,11 +146,11 @@ fn main() -> anyhow::Result<()> {
     let totals = episodes.iter().map(|episode| episode.total);
     let mean = totals.clone().sum::<f64>() / f64::from(count);
     let squares = totals.clone().map(|x| (x - mean) * (x - mean));
-    let sd = (squares.sum::<f64>() / f64::from(count)).sqrt();
+    let std = (squares.sum::<f64>() / f64::from(count)).sqrt();
     let worst = totals.fold(f64::INFINITY, f64::min);
     let held = episodes.iter().filter(|episode| episode.holds(1000)).count();
     println!(
-        "mean return of {count} episodes: {mean:.0} ± {sd:.0}, the worst {worst:.0}, held {held}"
+        "mean return of {count} episodes: {mean:.0} ± {std:.0}, the worst {worst:.0}, held {held}"
     );
     Ok(())
 }
