@@ -21,10 +21,9 @@ impl Units {
     pub(in crate::control) fn new<S: Real>(params: &Params<S>, limit: S) -> Self {
         let params: Params<f64> = params.cast();
         let [upper, link2, coupling] = params.inertias();
-        let Params { mass1, mass2, center_of_mass1, center_of_mass2, length1, .. } = params;
-        let moment = mass1 * center_of_mass1 + mass2 * (length1 + center_of_mass2);
+        let [moment1, moment2] = params.moments();
         let torque = limit.to_f64();
-        let force = (moment * params.gravity).abs() + torque;
+        let force = ((moment1 + moment2) * params.gravity).abs() + torque;
         let time = Real::sqrt((upper + link2 + 2.0 * (coupling - params.rotor)) / force);
         Self { time, torque, force }
     }

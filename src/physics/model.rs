@@ -154,11 +154,12 @@ for_f32_and_f64! {
             params.max_velocity2 = Self::in_f32(params.max_velocity2);
             let Params { inertia1, inertia2, gravity, dt, .. } = params;
             let (l1, m1, m2) = (params.length1, params.mass1, params.mass2);
-            let (lc1, lc2) = (params.center_of_mass1, params.center_of_mass2);
+            let lc2 = params.center_of_mass2;
             let nips = match params.dynamics {
                 Dynamics::Book => 0.0,
                 Dynamics::Nips => 1.0,
             };
+            let [moment1, moment2] = params.moments();
             let coupling = m2 * l1 * lc2;
             let link2 = m2 * lc2_squared + inertia2;
             let own = match form {
@@ -179,8 +180,8 @@ for_f32_and_f64! {
                 nips,
                 coupling,
                 link2,
-                gravity1: (m1 * lc1 + m2 * l1) * gravity,
-                gravity2: m2 * lc2 * gravity,
+                gravity1: moment1 * gravity,
+                gravity2: moment2 * gravity,
                 half_dt: dt * 0.5,
                 sixth_dt: dt / 6.0,
                 inverse_width: if has_friction { 1.0 / Self::width(&params) } else { 0.0 },

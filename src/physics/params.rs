@@ -297,6 +297,12 @@ for_f32_and_f64! {
             Err(Error::OutOfRange { name, value: value as f64, unit: "kg m²", rule })
         }
 
+        /// The moments of gravity, m1 lc1 + m2 l1 and m2 lc2, kg m.
+        pub(crate) const fn moments(&self) -> [S; 2] {
+            let Self { mass1, mass2, length1, center_of_mass1, center_of_mass2, .. } = *self;
+            [mass1 * center_of_mass1 + mass2 * length1, mass2 * center_of_mass2]
+        }
+
         /// M of the absolute angles where the elbow is straight, except the rotor: the inertias
         /// of the whole arm but link 2 turning with it, of link 2 about its joint, and their
         /// coupling, kg m².

@@ -140,20 +140,15 @@ fn a_regulator_needs_an_equilibrium() {
         let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, bent).unwrap();
         let [_, torque] = pendulum.inverse_dynamics([0.0; 2]).unwrap().torques;
         assert!(torque.abs() > 2.0);
-        for (state, torque, most) in [
-            (State::HANGING, 0.0, "1.1e-2"),
-            (State::UPRIGHT, 0.0, "1.1e-2"),
-            (bent, torque, "1.4e-2"),
-        ] {
+        for (state, torque) in [(State::HANGING, 0.0), (State::UPRIGHT, 0.0), (bent, torque)] {
             assert_eq!(regulate(state, torque), Ok(()), "{state:?}");
-            let rule = format!(
-                "the state must be in equilibrium, with velocities of 0 and accelerations of at \
-                most {most} rad/s², got "
-            );
+            let rule = "the state must be in equilibrium, with velocities of 0 and accelerations \
+                of at most 0.01";
             let moving = State { dtheta2: 0.25, ..state };
-            assert_eq!(regulate(moving, torque), Err(format!("{rule}0.25")));
+            let error = regulate(moving, torque).unwrap_err();
+            assert!(error.starts_with(rule) && error.ends_with(" rad/s², got 0.25"), "{error}");
             let leaning = State { theta1: state.theta1 + 0.1, ..state };
-            assert!(regulate(leaning, torque).unwrap_err().starts_with(&rule));
+            assert!(regulate(leaning, torque).unwrap_err().starts_with(rule));
             assert!(regulate(state, torque + 0.1).is_err());
         }
     }

@@ -24,13 +24,13 @@ int main(void)
         status = acrobot_set_params(&acrobot, &params, NULL);
     }
     if (status == ACROBOT_OK) {
-        status = acrobot_lqr(&acrobot, &UPRIGHT, &WEIGHTS, 1, &gain, NULL);
+        status = acrobot_regulator(&acrobot, &UPRIGHT, &WEIGHTS, 1, &gain, NULL);
     }
     if (status == ACROBOT_OK) {
         status = acrobot_set_state(&acrobot, &LEANING, NULL);
     }
     for (int tick = 0; tick < 1000 && status == ACROBOT_OK; tick++) {
-        status = acrobot_deviation(&acrobot, &UPRIGHT, &x);
+        status = acrobot_deviation_from(&acrobot, &UPRIGHT, &x);
         float torque = -(gain.theta1 * x.theta1 + gain.theta2 * x.theta2 +
                          gain.dtheta1 * x.dtheta1 + gain.dtheta2 * x.dtheta2);
         torque = torque > LIMIT ? LIMIT : torque < -LIMIT ? -LIMIT : torque;

@@ -7,7 +7,7 @@
 //   reset, may be null. The functions report null, misaligned pointers and zeroed memory, but not
 //   freed memory.
 // - Arguments, and arrays of a struct, must not overlap. The functions report arrays that overlap,
-//   and a result or error that would overwrite the acrobot, batch or planner.
+//   and a result or error that would overwrite the acrobot, batch, planner or swing-up.
 // - Arrays have `count` elements, in a batch one for each acrobot; `index` and `step` count from 0.
 // - Numbers are in SI units.
 
@@ -71,7 +71,10 @@
 #define ACROBOT_ALIGN 16
 
 // Bytes of an acrobot_planner_t.
-#define ACROBOT_PLANNER_SIZE 560
+#define ACROBOT_PLANNER_SIZE 752
+
+// Bytes of an acrobot_swing_up_t.
+#define ACROBOT_SWING_UP_SIZE 496
 
 // Bytes of an acrobot_action_space_t.
 #define ACROBOT_ACTION_SPACE_SIZE 64
@@ -254,15 +257,18 @@ typedef struct {
   // A by rows, and B.
   float a[4][4];
   float b[4];
-} acrobot_linear_model_t;
+} acrobot_step_model_t;
 
 // The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
 typedef struct {
-  // Of 2 − 2 cos x, for the deviation x of each angle from upright, 1/s.
+  // Q of xᵀ Q x for the deviation x from the target, by rows, symmetric: 1/(rad² s), 1/rad² and
+  // s/rad².
+  float q[4][4];
+  // The same of the state after the plan: 1/rad², s/rad² and s²/rad².
+  float qf[4][4];
+  // Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s.
   float angles[2];
-  // Of θ̇1² and θ̇2², s/rad².
-  float velocities[2];
-  // Of the squared torque, 1/((N m)² s).
+  // Of the squared difference of the torque from that which holds the target, 1/((N m)² s).
   float torque;
   // Of the squared change of the torque from step to step, 1/(N m)².
   float torque_change;
@@ -274,14 +280,22 @@ typedef struct {
   float height;
   // `below` costs half where the tip is so far below `height`, m; above 0.
   float margin;
-  // Of ln(1 + e), where e is 1 at the border of the region in which the regulator holds.
+  // Of ln(1 + e) after the plan, where e is 1 at the border of the region in which the regulator
+  // holds.
   float arrival;
 } acrobot_cost_t;
 
-// Plans swing-ups for one machine. Call acrobot_planner_init first. You may copy and move it.
-typedef struct ACROBOT_ALIGNED(16) {
-  uint8_t bytes[ACROBOT_PLANNER_SIZE];
-} acrobot_planner_t;
+// A machine, where it is to go, and what the way there costs.
+typedef struct {
+  // `dt` is the time between two decisions.
+  acrobot_params_t params;
+  // The largest torque, N m.
+  float limit;
+  // The equilibrium in which a plan ends, and the torque that holds it, N m.
+  acrobot_state_t target;
+  float torque;
+  acrobot_cost_t cost;
+} acrobot_problem_t;
 
 // A step of a plan. Zeros are one without a torque.
 typedef struct {
@@ -289,11 +303,40 @@ typedef struct {
   acrobot_state_t state;
   // N m.
   float torque;
-  // What to add to the torque for each deviation from `state`, N m per rad and per rad/s.
+  // K of torque − K x for the deviation x from `state`, N m per rad and per rad/s.
   acrobot_state_t gain;
   // For the planner.
   float workspace[2];
 } acrobot_knot_t;
+
+// A gain, and the region in which its torque lasts.
+typedef struct {
+  // K of −K x for a deviation x, N m per rad and per rad/s.
+  acrobot_state_t gain;
+  // F by rows: x is in the region if |F x| is below 1.
+  float factor[4][4];
+} acrobot_region_t;
+
+// What holds the target after a plan. It can be a constant.
+typedef struct {
+  acrobot_state_t target;
+  // The torque that holds the target, N m.
+  float torque;
+  // The gain in motion, and at rest, which is used where |F x|² is below `reach`.
+  acrobot_region_t moving;
+  acrobot_region_t resting;
+  float reach;
+} acrobot_feedback_t;
+
+// Plans motions of one machine. Call acrobot_planner_init first. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_PLANNER_SIZE];
+} acrobot_planner_t;
+
+// Swings up without a plan. Call acrobot_swing_up_init first. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_SWING_UP_SIZE];
+} acrobot_swing_up_t;
 
 // Draws random actions: Gymnasium's `action_space`. You may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
@@ -390,7 +433,7 @@ acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
 acrobot_status_t acrobot_tip_height(const acrobot_t *acrobot, float *height);
 
 // The deviation of the state from a finite `target`, with angles wrapped to ±π.
-acrobot_status_t acrobot_deviation(const acrobot_t *acrobot,
+acrobot_status_t acrobot_deviation_from(const acrobot_t *acrobot,
     const acrobot_state_t *target,
     acrobot_state_t *deviation);
 
@@ -398,7 +441,7 @@ acrobot_status_t acrobot_deviation(const acrobot_t *acrobot,
 acrobot_status_t acrobot_linearize_step(acrobot_t *acrobot,
     const acrobot_state_t *state,
     float torque,
-    acrobot_linear_model_t *model,
+    acrobot_step_model_t *model,
     acrobot_error_t *error);
 
 // The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque is
@@ -408,29 +451,29 @@ acrobot_status_t acrobot_linearize_step(acrobot_t *acrobot,
 // accelerations of at most 0.25 % of that of the straight acrobot that falls from horizontal. `q`
 // has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that of
 // the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the `gain`.
-acrobot_status_t acrobot_lqr(acrobot_t *acrobot,
+acrobot_status_t acrobot_regulator(acrobot_t *acrobot,
     const acrobot_state_t *target,
     const acrobot_state_t *q,
     float r,
     acrobot_state_t *gain,
     acrobot_error_t *error);
 
-// The default weights for a machine and its largest torque, N m, from whose sizes they follow.
-acrobot_status_t acrobot_default_cost(const acrobot_params_t *params,
-    float limit,
-    acrobot_cost_t *cost);
-
-// For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
-// torque, N m. No velocity of a plan reaches its bound. A null `cost` has the default weights.
-acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
+// The problem to stand with an `elbow` angle, rad, for a largest torque, N m: 0 is a swing-up. It
+// has the default weights, which follow from the size of the machine. Then you may change them.
+acrobot_status_t acrobot_problem_init(acrobot_problem_t *problem,
     const acrobot_params_t *params,
     float limit,
-    const acrobot_cost_t *cost,
+    float elbow,
     acrobot_error_t *error);
 
-// Plans until a plan ends where a regulator holds the acrobot upright. `length` receives its
-// number of knots, which are the first. `error` names the `tries` if so many find no plan.
-// Rejected calls may change knots.
+// No velocity of a plan reaches its bound.
+acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
+    const acrobot_problem_t *problem,
+    acrobot_error_t *error);
+
+// Plans until a plan ends where the regulator holds the target. `length` receives its number of
+// knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls may
+// change knots.
 acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
     const acrobot_state_t *start,
     uint32_t tries,
@@ -450,17 +493,33 @@ acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
     float *cost,
     acrobot_error_t *error);
 
-// The torque at a step of a plan, N m, and after it that of the regulator. Clamp it to that of
-// your motor.
-acrobot_status_t acrobot_planner_follow(const acrobot_planner_t *planner,
-    const acrobot_knot_t *knots,
+// What holds the target after each plan.
+acrobot_status_t acrobot_planner_feedback(const acrobot_planner_t *planner,
+    acrobot_feedback_t *feedback);
+
+// Whether this feedback, with the largest torque, takes the machine from a state to the target.
+acrobot_status_t acrobot_planner_holds_from(const acrobot_planner_t *planner,
+    const acrobot_state_t *state,
+    bool *holds);
+
+// The torque at a step of a plan, N m, and after it that of the feedback. Clamp it to that of your
+// motor. It needs no planner, so knots and feedback may be constants.
+acrobot_status_t acrobot_plan_torque(const acrobot_knot_t *knots,
     size_t length,
+    const acrobot_feedback_t *after,
     size_t step,
     const acrobot_state_t *state,
     float *torque);
 
+// For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
+// torque, N m.
+acrobot_status_t acrobot_swing_up_init(acrobot_swing_up_t *swing_up,
+    const acrobot_params_t *params,
+    float limit,
+    acrobot_error_t *error);
+
 // The torque without a plan, N m, at most the largest. It pumps energy until the regulator holds.
-acrobot_status_t acrobot_planner_decide(acrobot_planner_t *planner,
+acrobot_status_t acrobot_swing_up_torque(acrobot_swing_up_t *swing_up,
     const acrobot_state_t *state,
     float *torque,
     acrobot_error_t *error);

@@ -1,7 +1,7 @@
-//! A linear model and a linear-quadratic regulator.
+//! The model of a step, and a linear-quadratic regulator.
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{LinearModel, difference, linearize_step, regulator};
+use acrobot::control::model::StepModel;
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, State};
 
@@ -11,7 +11,7 @@ use crate::single::acrobot_t;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_deviation(
+pub unsafe extern "C" fn acrobot_deviation_from(
     acrobot: *const acrobot_t,
     target: *const acrobot_state_t,
     deviation: *mut acrobot_state_t,
@@ -19,12 +19,12 @@ pub unsafe extern "C" fn acrobot_deviation(
     get(acrobot, deviation, |acrobot| {
         let target = State::from(read(target)?);
         target.validate()?;
-        Ok(State::from(difference(acrobot.inner().pendulum().state(), target)).into())
+        Ok(State::from(acrobot.inner().pendulum().state().deviation_from(target)).into())
     })
 }
 
 #[repr(C)]
-pub struct acrobot_linear_model_t {
+pub struct acrobot_step_model_t {
     pub a: [[f32; 4]; 4],
     pub b: [f32; 4],
 }
@@ -34,19 +34,19 @@ pub unsafe extern "C" fn acrobot_linearize_step(
     acrobot: *mut acrobot_t,
     state: *const acrobot_state_t,
     torque: f32,
-    model: *mut acrobot_linear_model_t,
+    model: *mut acrobot_step_model_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(acrobot, model, error, |acrobot| {
         check(model)?;
         let pendulum = Pendulum::<Damped<Fast>>::new(*acrobot.params(), read(state)?.into())?;
-        let LinearModel { a, b } = linearize_step(&pendulum, torque)?;
-        Ok(acrobot_linear_model_t { a, b })
+        let StepModel { a, b } = pendulum.linearize_step(torque)?;
+        Ok(acrobot_step_model_t { a, b })
     })
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_lqr(
+pub unsafe extern "C" fn acrobot_regulator(
     acrobot: *mut acrobot_t,
     target: *const acrobot_state_t,
     q: *const acrobot_state_t,
@@ -69,7 +69,7 @@ pub unsafe extern "C" fn acrobot_lqr(
             }
             *to = weight;
         }
-        let regulator = regulator(&pendulum, 0.0, &weights, r)?;
+        let regulator = pendulum.regulator(0.0, &weights, r)?;
         Ok(State::from(regulator.gain).into())
     })
 }

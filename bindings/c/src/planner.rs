@@ -1,9 +1,10 @@
-//! Plans of swing-ups.
+//! Plans, and swinging up without one.
 
 use core::mem::transmute;
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{Cost, Knot, Planner};
+use acrobot::control::plan::{Cost, Knot, Plan, Planner, Problem, SwingUp};
+use acrobot::control::regulator::Feedback;
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, State};
 
@@ -11,17 +12,29 @@ use crate::data::{acrobot_params_t, acrobot_state_t};
 use crate::memory::{Holder, Span, array, change, check, check_apart, check_result, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, status};
 
-pub const ACROBOT_PLANNER_SIZE: usize = 560;
-
-#[repr(C, align(16))]
-pub struct acrobot_planner_t {
-    bytes: [u8; ACROBOT_PLANNER_SIZE],
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_cost_t {
+    pub q: [[f32; 4]; 4],
+    pub qf: [[f32; 4]; 4],
+    pub angles: [f32; 2],
+    pub torque: f32,
+    pub torque_change: f32,
+    pub power: f32,
+    pub below: f32,
+    pub height: f32,
+    pub margin: f32,
+    pub arrival: f32,
 }
 
-impl Holder for acrobot_planner_t {
-    type Value = Planner<Damped<Fast>>;
-
-    const TAG: u32 = u32::from_le_bytes(*b"plan");
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_problem_t {
+    pub params: acrobot_params_t,
+    pub limit: f32,
+    pub target: acrobot_state_t,
+    pub torque: f32,
+    pub cost: acrobot_cost_t,
 }
 
 #[repr(C)]
@@ -34,61 +47,94 @@ pub struct acrobot_knot_t {
 
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct acrobot_cost_t {
-    pub angles: [f32; 2],
-    pub velocities: [f32; 2],
+pub struct acrobot_region_t {
+    pub gain: acrobot_state_t,
+    pub factor: [[f32; 4]; 4],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_feedback_t {
+    pub target: acrobot_state_t,
     pub torque: f32,
-    pub torque_change: f32,
-    pub power: f32,
-    pub below: f32,
-    pub height: f32,
-    pub margin: f32,
-    pub arrival: f32,
+    pub moving: acrobot_region_t,
+    pub resting: acrobot_region_t,
+    pub reach: f32,
+}
+
+pub const ACROBOT_PLANNER_SIZE: usize = 752;
+
+#[repr(C, align(16))]
+pub struct acrobot_planner_t {
+    bytes: [u8; ACROBOT_PLANNER_SIZE],
+}
+
+impl Holder for acrobot_planner_t {
+    type Value = Planner<Damped<Fast>>;
+
+    const TAG: u32 = u32::from_le_bytes(*b"plan");
+}
+
+pub const ACROBOT_SWING_UP_SIZE: usize = 496;
+
+#[repr(C, align(16))]
+pub struct acrobot_swing_up_t {
+    bytes: [u8; ACROBOT_SWING_UP_SIZE],
+}
+
+impl Holder for acrobot_swing_up_t {
+    type Value = SwingUp<Damped<Fast>>;
+
+    const TAG: u32 = u32::from_le_bytes(*b"swup");
 }
 
 fn knots_of(
     planner: *const acrobot_planner_t,
-    knots: *const acrobot_knot_t,
+    knots: *mut acrobot_knot_t,
     count: usize,
 ) -> Result<*mut [Knot<f32>], Rejected> {
     // Both are `repr(C)` and have the same fields.
     const { assert!(size_of::<Knot<f32>>() == size_of::<acrobot_knot_t>()) };
-    let knots = array(knots.cast_mut().cast(), count)?;
+    let knots = array(knots.cast(), count)?;
     check_apart(&[Span::new(planner, 1), Span::of(knots)])?;
     Ok(knots)
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_default_cost(
+pub unsafe extern "C" fn acrobot_problem_init(
+    problem: *mut acrobot_problem_t,
     params: *const acrobot_params_t,
     limit: f32,
-    cost: *mut acrobot_cost_t,
+    elbow: f32,
+    error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    status(|| {
-        check(cost)?;
-        let weights = Cost::new(&read(params)?.try_into()?, limit)?;
+    let init = || {
+        let params = read(params)?;
+        let Problem { target, torque, cost, .. } =
+            Problem::balance(params.try_into()?, limit, elbow)?;
         // SAFETY: both are `repr(C)` and have the same fields.
-        cost.write(transmute::<Cost<f32>, acrobot_cost_t>(weights));
+        let cost = transmute::<Cost<f32>, acrobot_cost_t>(cost);
+        problem.write(acrobot_problem_t { params, limit, target: target.into(), torque, cost });
         Ok(())
+    };
+    status(|| {
+        check(problem)?;
+        init().inspect_err(|rejected: &Rejected| rejected.explain(error))
     })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_init(
     planner: *mut acrobot_planner_t,
-    params: *const acrobot_params_t,
-    limit: f32,
-    cost: *const acrobot_cost_t,
+    problem: *const acrobot_problem_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     let init = || {
-        let params = read(params)?.try_into()?;
-        let cost = match cost.is_null() {
-            true => Cost::new(&params, limit)?,
-            // SAFETY: as above.
-            false => transmute::<acrobot_cost_t, Cost<f32>>(read(cost)?),
-        };
-        Holder::init(planner, Planner::with_cost(params, limit, cost)?)
+        let acrobot_problem_t { params, limit, target, torque, cost } = read(problem)?;
+        // SAFETY: as above.
+        let cost = transmute::<acrobot_cost_t, Cost<f32>>(cost);
+        let (params, target) = (params.try_into()?, target.into());
+        Holder::init(planner, Planner::new(&Problem { params, limit, target, torque, cost })?)
     };
     status(|| {
         check_result(error, planner)?;
@@ -111,7 +157,7 @@ pub unsafe extern "C" fn acrobot_planner_plan(
         check(length)?;
         let knots = knots_of(planner, knots, count)?;
         let start = read(start)?.into();
-        Ok(value.plan(start, tries, &mut Pcg64::new(seed), &mut *knots)?.len())
+        Ok(value.plan_into(start, tries, &mut Pcg64::new(seed), &mut *knots)?.knots.len())
     })
 }
 
@@ -133,31 +179,73 @@ pub unsafe extern "C" fn acrobot_planner_improve(
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_planner_follow(
+pub unsafe extern "C" fn acrobot_planner_feedback(
     planner: *const acrobot_planner_t,
-    knots: *const acrobot_knot_t,
-    length: usize,
-    step: usize,
-    state: *const acrobot_state_t,
-    torque: *mut f32,
+    feedback: *mut acrobot_feedback_t,
 ) -> acrobot_status_t {
-    get(planner, torque, |value| {
-        let knots = knots_of(planner, knots, length)?;
-        let state = State::from(read(state)?);
-        state.validate()?;
-        Ok(value.follow(&*knots, step, state))
+    get(planner, feedback, |value| {
+        // SAFETY: both are `repr(C)` and have the same fields.
+        Ok(transmute::<Feedback<f32>, acrobot_feedback_t>(*value.regulator().feedback()))
     })
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_planner_decide(
-    planner: *mut acrobot_planner_t,
+pub unsafe extern "C" fn acrobot_planner_holds_from(
+    planner: *const acrobot_planner_t,
+    state: *const acrobot_state_t,
+    holds: *mut bool,
+) -> acrobot_status_t {
+    get(planner, holds, |value| {
+        let state = State::from(read(state)?);
+        state.validate()?;
+        Ok(value.regulator().holds_from(state))
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_plan_torque(
+    knots: *const acrobot_knot_t,
+    length: usize,
+    after: *const acrobot_feedback_t,
+    step: usize,
+    state: *const acrobot_state_t,
+    torque: *mut f32,
+) -> acrobot_status_t {
+    status(|| {
+        check(torque)?;
+        let knots = array(knots.cast::<Knot<f32>>().cast_mut(), length)?;
+        // SAFETY: as above.
+        let after = transmute::<acrobot_feedback_t, Feedback<f32>>(read(after)?);
+        let state = State::from(read(state)?);
+        state.validate()?;
+        torque.write(Plan { knots: &*knots, after }.torque(step, state));
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_swing_up_init(
+    swing_up: *mut acrobot_swing_up_t,
+    params: *const acrobot_params_t,
+    limit: f32,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    let init = || Holder::init(swing_up, SwingUp::new(read(params)?.try_into()?, limit)?);
+    status(|| {
+        check_result(error, swing_up)?;
+        init().inspect_err(|rejected: &Rejected| rejected.explain(error))
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_swing_up_torque(
+    swing_up: *mut acrobot_swing_up_t,
     state: *const acrobot_state_t,
     torque: *mut f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    change(planner, torque, error, |value| {
+    change(swing_up, torque, error, |value| {
         check(torque)?;
-        Ok(value.decide(read(state)?.into())?)
+        Ok(value.torque(read(state)?.into())?)
     })
 }

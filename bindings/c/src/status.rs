@@ -3,7 +3,6 @@
 use core::ffi::{c_char, c_int};
 
 use acrobot::Error;
-use acrobot::control::{ControlError, NoPlan};
 
 #[repr(C)]
 pub enum acrobot_status_t {
@@ -73,38 +72,21 @@ impl From<Error> for Rejected {
             Error::OutOfRange { name, value, unit, rule } => Self::number(name, value, unit, rule),
             Error::UnknownAction(_) => ACROBOT_ERROR_UNKNOWN_ACTION.into(),
             Error::NoSuchIndex { .. } => ACROBOT_ERROR_NO_SUCH_INDEX.into(),
-            // EmptyBatch and WrongLength. No function here can cause the others.
-            _ => ACROBOT_ERROR_WRONG_COUNT.into(),
-        }
-    }
-}
-
-impl From<ControlError> for Rejected {
-    fn from(error: ControlError) -> Self {
-        match error {
-            ControlError::Invalid(error) => error.into(),
-            ControlError::NotFinite { name, value } => {
+            Error::EmptyBatch | Error::WrongLength { .. } => ACROBOT_ERROR_WRONG_COUNT.into(),
+            Error::NotFinite { name, value } => {
                 Self::number(name, value, "", "finite in each element")
             }
-            ControlError::NotInEquilibrium { rate, .. } => {
+            Error::NotInEquilibrium { rate, .. } => {
                 let rule = "in equilibrium: at rest, accelerating at most 0.25 % of a fall";
                 Self::number("target", rate, "", rule)
+            }
+            Error::NoPlan { tries } => {
+                Self::number("tries", tries.into(), "", "enough to find a plan")
             }
             // Not another status: each firmware would contain its text.
             _ => {
                 let rule = "finite; target, dt, gravity and weights allow no regulator";
                 Self::number("gain", f64::NAN, "", rule)
-            }
-        }
-    }
-}
-
-impl From<NoPlan> for Rejected {
-    fn from(error: NoPlan) -> Self {
-        match error {
-            NoPlan::Invalid(error) => error.into(),
-            NoPlan::NotFound { tries } => {
-                Self::number("tries", tries.into(), "", "enough to find a plan")
             }
         }
     }

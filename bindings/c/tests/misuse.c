@@ -29,9 +29,10 @@ static acrobot_status_t step_batch(acrobot_batch_t *batch, void *rewards)
 }
 
 // What holds the value that a function uses.
-enum { ALONE, ACTIONS, BATCH, PLANNER, HOLDERS };
+enum { ALONE, ACTIONS, BATCH, PLANNER, SWING_UP, HOLDERS };
 static const size_t SIZES[] = {
     ACROBOT_SIZE, ACROBOT_ACTION_SPACE_SIZE, ACROBOT_BATCH_SIZE(COUNT), ACROBOT_PLANNER_SIZE,
+    ACROBOT_SWING_UP_SIZE,
 };
 enum { NEEDED, OPTIONAL, NONE };
 enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
@@ -61,11 +62,11 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     ERROR(ALONE, acrobot_draw_params(acrobot, &reversed, out)) \
     RESULT(ALONE, float, acrobot_energy(acrobot, out)) \
     RESULT(ALONE, float, acrobot_tip_height(acrobot, out)) \
-    RESULT(ALONE, acrobot_linear_model_t, acrobot_linearize_step(acrobot, &REST, 0, out, NULL)) \
+    RESULT(ALONE, acrobot_step_model_t, acrobot_linearize_step(acrobot, &REST, 0, out, NULL)) \
     ERROR(ALONE, acrobot_linearize_step(acrobot, &REST, INF, &model, out)) \
-    RESULT(ALONE, acrobot_state_t, acrobot_deviation(acrobot, &REST, out)) \
-    RESULT(ALONE, acrobot_state_t, acrobot_lqr(acrobot, &REST, &ONES, 1, out, NULL)) \
-    ERROR(ALONE, acrobot_lqr(acrobot, &FAR, &ONES, 1, &x, out)) \
+    RESULT(ALONE, acrobot_state_t, acrobot_deviation_from(acrobot, &REST, out)) \
+    RESULT(ALONE, acrobot_state_t, acrobot_regulator(acrobot, &REST, &ONES, 1, out, NULL)) \
+    ERROR(ALONE, acrobot_regulator(acrobot, &FAR, &ONES, 1, &x, out)) \
     RESULT(ACTIONS, uint8_t, acrobot_action_space_sample(action_space, out)) \
     BEGIN(acrobot_batch_reset(batch)) \
     BEGIN(acrobot_batch_reset_with_seed(batch, 42)) \
@@ -84,9 +85,10 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     ERROR(PLANNER, acrobot_planner_plan(planner, &FAR, 1, 4, knots, COUNT, &length, out)) \
     RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, COUNT, out, NULL)) \
     ERROR(PLANNER, acrobot_planner_improve(planner, &FAR, 1, knots, COUNT, &torque, out)) \
-    RESULT(PLANNER, float, acrobot_planner_follow(planner, knots, COUNT, 0, &UP, out)) \
-    RESULT(PLANNER, float, acrobot_planner_decide(planner, &UP, out, NULL)) \
-    ERROR(PLANNER, acrobot_planner_decide(planner, &FAR, &torque, out))
+    RESULT(PLANNER, acrobot_feedback_t, acrobot_planner_feedback(planner, out)) \
+    RESULT(PLANNER, bool, acrobot_planner_holds_from(planner, &UP, out)) \
+    RESULT(SWING_UP, float, acrobot_swing_up_torque(swing_up, &UP, out, NULL)) \
+    ERROR(SWING_UP, acrobot_swing_up_torque(swing_up, &FAR, &torque, out))
 
 struct call {
     int holder, optional, status;
@@ -108,7 +110,8 @@ static acrobot_status_t call(int index, void *holder, void *pointer)
     acrobot_action_space_t *action_space = (acrobot_action_space_t *)holder;
     acrobot_batch_t *batch = (acrobot_batch_t *)holder;
     acrobot_planner_t *planner = (acrobot_planner_t *)holder;
-    acrobot_linear_model_t model;
+    acrobot_swing_up_t *swing_up = (acrobot_swing_up_t *)holder;
+    acrobot_step_model_t model;
     acrobot_step_t step;
     acrobot_state_t x;
     float torque;
@@ -136,21 +139,27 @@ static void expect(int index, void *holder, void *out, int status)
 
 #define MARGIN 192
 #define SIZE ACROBOT_BATCH_SIZE(COUNT)
-ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t arena[MARGIN + SIZE + MARGIN];
-ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t other[SIZE], spare[MARGIN];
-static uint8_t saved[SIZE];
+// The most that a holder has.
+#define MOST (SIZE > ACROBOT_PLANNER_SIZE ? SIZE : ACROBOT_PLANNER_SIZE)
+ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t arena[MARGIN + MOST + MARGIN];
+ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t other[MOST], spare[MARGIN];
+static uint8_t saved[MOST];
 static uint8_t *const held = arena + MARGIN;
 
 static void *hold(int holder)
 {
     void *memory = held;
     acrobot_batch_t *batch;
+    acrobot_problem_t problem;
+    ACCEPTED(acrobot_problem_init(&problem, &PARAMS, 1, 0, NULL));
     ACCEPTED(holder == ALONE     ? acrobot_init((acrobot_t *)memory, 42)
              : holder == ACTIONS ? acrobot_action_space_init((acrobot_action_space_t *)memory, 42)
              : holder == PLANNER
-                 ? acrobot_planner_init((acrobot_planner_t *)memory, &PARAMS, 1, NULL, NULL)
+                 ? acrobot_planner_init((acrobot_planner_t *)memory, &problem, NULL)
+             : holder == SWING_UP
+                 ? acrobot_swing_up_init((acrobot_swing_up_t *)memory, &PARAMS, 1, NULL)
                  : acrobot_batch_init(memory, SIZE, COUNT, 42, &batch));
-    __builtin_memcpy(saved, held, SIZE);
+    __builtin_memcpy(saved, held, MOST);
     return memory;
 }
 
@@ -267,21 +276,21 @@ static void arguments_of_an_acrobot(void)
     draws.gravity.kind = 4;
     expect_message(acrobot_draw_params(acrobot, &draws, &error), "kind must be from 0 to 3, got ");
     CHECK(error.value == 4);
-    REJECTED(NULL, acrobot_deviation(acrobot, NULL, &x));
-    REJECTED(OUT_OF_RANGE, acrobot_deviation(acrobot, &FAR, &x));
-    REJECTED(NULL, acrobot_lqr(acrobot, NULL, &ONES, 1, &x, &error));
-    REJECTED(NULL, acrobot_lqr(acrobot, &REST, NULL, 1, &x, &error));
+    REJECTED(NULL, acrobot_deviation_from(acrobot, NULL, &x));
+    REJECTED(OUT_OF_RANGE, acrobot_deviation_from(acrobot, &FAR, &x));
+    REJECTED(NULL, acrobot_regulator(acrobot, NULL, &ONES, 1, &x, &error));
+    REJECTED(NULL, acrobot_regulator(acrobot, &REST, NULL, 1, &x, &error));
     expect_message(
-        acrobot_lqr(acrobot, &ONES, &ONES, 1, &x, &error),
+        acrobot_regulator(acrobot, &ONES, &ONES, 1, &x, &error),
         "target must be in equilibrium: at rest, accelerating at most 0.25 % of a fall, got ");
-    expect_message(acrobot_lqr(acrobot, &REST, &NEGATIVE, 1, &x, &error),
+    expect_message(acrobot_regulator(acrobot, &REST, &NEGATIVE, 1, &x, &error),
                    "q.theta2 must be finite and at least 0, got ");
     // Without gravity and weights nothing brings the acrobot back.
     params = PARAMS;
     params.gravity = 0;
     ACCEPTED(acrobot_set_params(&weightless, &params, NULL));
     expect_message(
-        acrobot_lqr(&weightless, &REST, &REST, 1, &x, &error),
+        acrobot_regulator(&weightless, &REST, &REST, 1, &x, &error),
         "gain must be finite; target, dt, gravity and weights allow no regulator, got ");
     CHECK(same(acrobot, saved, ACROBOT_SIZE));
 }
@@ -291,23 +300,33 @@ static void arguments_of_a_planner(void)
 {
     acrobot_planner_t *planner = (acrobot_planner_t *)hold(PLANNER);
     acrobot_knot_t *inside = (acrobot_knot_t *)(void *)held;
-    acrobot_cost_t cost;
+    acrobot_problem_t problem;
+    acrobot_feedback_t after;
     size_t length;
     float number;
-    REJECTED(NULL, acrobot_default_cost(NULL, 1, &cost));
-    REJECTED(NULL, acrobot_default_cost(&PARAMS, 1, NULL));
-    REJECTED(OUT_OF_RANGE, acrobot_default_cost(&PARAMS, 0, &cost));
-    ACCEPTED(acrobot_default_cost(&PARAMS, 1, &cost));
-    cost.power = -1;
-    REJECTED(NULL, acrobot_planner_init(NULL, &PARAMS, 1, NULL, NULL));
-    REJECTED(NULL, acrobot_planner_init(planner, NULL, 1, NULL, NULL));
-    REJECTED(OVERLAP, acrobot_planner_init(planner, &PARAMS, 0, NULL, (acrobot_error_t *)planner));
-    expect_message(acrobot_planner_init(planner, &PARAMS, 1, &cost, &error),
+    bool holds;
+    REJECTED(NULL, acrobot_problem_init(NULL, &PARAMS, 1, 0, NULL));
+    REJECTED(NULL, acrobot_problem_init(&problem, NULL, 1, 0, NULL));
+    REJECTED(OUT_OF_RANGE, acrobot_problem_init(&problem, &PARAMS, 0, 0, NULL));
+    expect_message(acrobot_problem_init(&problem, &PARAMS, 1, INF, &error),
+                   "elbow must be a finite number of rad, got ");
+    ACCEPTED(acrobot_problem_init(&problem, &PARAMS, 1, 0, NULL));
+    REJECTED(NULL, acrobot_planner_init(NULL, &problem, NULL));
+    REJECTED(NULL, acrobot_planner_init(planner, NULL, NULL));
+    REJECTED(OVERLAP, acrobot_planner_init(planner, &problem, (acrobot_error_t *)planner));
+    problem.cost.power = -1;
+    expect_message(acrobot_planner_init(planner, &problem, &error),
                    "power must be finite and at least 0 per J, got ");
     REJECTED(NULL, acrobot_planner_plan(planner, &REST, 2, 4, NULL, COUNT, &length, NULL));
     REJECTED(OVERLAP, acrobot_planner_plan(planner, &REST, 2, 4, inside, 1, &length, NULL));
     REJECTED(OVERLAP, acrobot_planner_improve(planner, &REST, 2, inside, 1, &number, NULL));
-    REJECTED(OUT_OF_RANGE, acrobot_planner_follow(planner, knots, COUNT, 0, &FAR, &number));
+    REJECTED(OUT_OF_RANGE, acrobot_planner_holds_from(planner, &FAR, &holds));
+    ACCEPTED(acrobot_planner_feedback(planner, &after));
+    REJECTED(OUT_OF_RANGE, acrobot_plan_torque(knots, COUNT, &after, 0, &FAR, &number));
+    REJECTED(NULL, acrobot_plan_torque(NULL, COUNT, &after, 0, &REST, &number));
+    REJECTED(NULL, acrobot_plan_torque(knots, COUNT, NULL, 0, &REST, &number));
+    REJECTED(NULL, acrobot_plan_torque(knots, COUNT, &after, 0, NULL, &number));
+    REJECTED(NULL, acrobot_plan_torque(knots, COUNT, &after, 0, &REST, NULL));
     CHECK(same(planner, saved, sizeof *planner));
     expect_message(acrobot_planner_plan(planner, &REST, 2, 4, knots, COUNT, &length, &error),
                    "tries must be enough to find a plan, got ");

@@ -1,7 +1,7 @@
 //! What is to be planned.
 
 use super::cost::Cost;
-use crate::error::Error;
+use crate::error::{Error, Range};
 use crate::physics::{Modeled, Params, State};
 
 /// A machine, where it is to go, and what the way there costs.
@@ -27,8 +27,7 @@ impl<S: Modeled> Problem<S> {
     ///
     /// Those of [`Cost::new`].
     pub fn swing_up(params: Params<S>, limit: S) -> Result<Self, Error> {
-        let cost = Cost::new(&params, limit)?;
-        Ok(Self { params, limit, target: State::UPRIGHT, torque: S::ZERO, cost })
+        Self::balance(params, limit, S::from_f64(0.0))
     }
 
     /// To balance with a bent elbow: θ2, rad. The centre of mass is above the fixed joint, and the
@@ -39,32 +38,32 @@ impl<S: Modeled> Problem<S> {
     /// use acrobot::control::plan::Problem;
     ///
     /// let problem = Problem::balance(Params::<f64>::DEFAULT, 10.0, 1.0)?;
-    /// assert!((problem.target.theta1 - 2.899).abs() < 1e-3); // rad
-    /// assert!((problem.torque + 3.363).abs() < 1e-3); // N m
+    /// assert!((problem.target.theta1 - 2.908).abs() < 1e-3); // rad
+    /// assert!((problem.torque + 3.399).abs() < 1e-3); // N m
     /// # Ok::<(), acrobot::Error>(())
     /// ```
     ///
     /// # Errors
     ///
     /// Those of [`Cost::new`], and the angle is not finite.
+    #[inline(never)] // saves flash
     pub fn balance(params: Params<S>, limit: S, elbow: S) -> Result<Self, Error> {
-        let problem = Self::swing_up(params, limit)?;
-        State { theta2: elbow, ..State::HANGING }.validate()?;
-        let Params { mass1, mass2, length1, length2, gravity, .. } = params.cast::<f64>();
-        let Params { center_of_mass1, center_of_mass2, .. } = params.cast::<f64>();
-        let elbow = elbow.to_f64();
-        let [moment1, moment2] =
-            [mass1 * center_of_mass1 + mass2 * length1, mass2 * center_of_mass2];
-        let (sin, cos) = (libm::sin(elbow), libm::cos(elbow));
-        let theta1 = libm::atan2(moment2 * sin, -(moment1 + moment2 * cos));
-        let torque = moment2 * gravity * libm::sin(theta1 + elbow);
-        let height = -length1 * libm::cos(theta1) - length2 * libm::cos(theta1 + elbow);
-        let [theta1, torque, height] = [theta1, torque, height].map(S::from_f64);
-        Ok(Self {
-            target: State { theta1, theta2: S::from_f64(elbow), ..State::HANGING },
-            torque,
-            cost: Cost { height, ..problem.cost },
-            ..problem
-        })
+        let mut cost = Cost::new(&params, limit)?;
+        Range::Finite.check("elbow", elbow.to_f64(), "rad")?;
+        let wide: Params<f64> = params.cast();
+        let [moment1, moment2] = wide.moments();
+        let (sin, cos) = (libm::sin(elbow.to_f64()), libm::cos(elbow.to_f64()));
+        // The centre of mass relative to link 1: along it, and across.
+        let (along, across) = (moment1 + moment2 * cos, moment2 * sin);
+        let distance = libm::hypot(along, across);
+        let (cos1, cos_sum) = (-along / distance, -(moment1 * cos + moment2) / distance);
+        cost.height = S::from_f64(-wide.length1 * cos1 - wide.length2 * cos_sum);
+        let target = State {
+            theta1: S::from_f64(libm::atan2(across, -along)),
+            theta2: elbow,
+            ..State::HANGING
+        };
+        let torque = S::from_f64(-wide.gravity * moment2 * moment1 * sin / distance);
+        Ok(Self { params, limit, target, torque, cost })
     }
 }
