@@ -198,10 +198,10 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
                 "{name} must be positive semidefinite, got elements of up to {value} in size after \
                 the elimination of its positive pivots"
             ),
-            Error::NotInEquilibrium { rate, largest } => write!(
+            Error::NotInEquilibrium { rate, .. } => write!(
                 f,
-                "the state must be in equilibrium, with velocities of 0 and accelerations of at \
-                most {largest} rad/s², got {rate}"
+                "{}: at rest, accelerating at most 0.25 % of a fall, got {rate}",
+                error.message()
             ),
             Error::IllConditioned { error: size } => write!(f, "{}, got {size}", error.message()),
             Error::NoPlan { tries } => write!(f, "{} in {tries} tries", error.message()),

@@ -10,7 +10,7 @@ mod riccati;
 mod tvlqr;
 
 pub use bounded::BoundedRegulator;
-pub(super) use bounded::{is_below, is_near};
+pub(super) use bounded::{is_below, is_near, step};
 pub(super) use dlqr::check_weights;
 pub use dlqr::{Lqr, dlqr};
 pub use feedback::Feedback;

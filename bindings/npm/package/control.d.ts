@@ -4,12 +4,21 @@ import type { Params, Seed, State } from "./index.js";
 export type Matrix = ArrayLike<ArrayLike<number>>;
 
 /**
- * x is the deviation from a state [θ1, θ2, θ̇1, θ̇2], rad and rad/s, and u that from a torque, N m.
+ * A model in continuous time, ẋ = A x + B u: x is the deviation from a state [θ1, θ2, θ̇1, θ̇2], rad
+ * and rad/s, and u that from a torque, N m.
  */
 export interface LinearModel {
-  /** A by rows: the derivatives of the results by the state. */
+  /** A by rows: the derivatives of the rates by the state. */
   a: Float32Array[];
-  /** B: the derivatives of the results by the torque. */
+  /** B: the derivatives of the rates by the torque. */
+  b: Float32Array;
+}
+
+/** A model of one step, x′ = A x + B u, of the same deviations. */
+export interface StepModel {
+  /** A by rows: the derivatives of the state after the step by that before. */
+  a: Float32Array[];
+  /** B: the derivatives of the state after the step by the torque. */
   b: Float32Array;
 }
 
@@ -31,7 +40,7 @@ export function linearize(
 /** One step of `dt` about a state and a torque, N m: x′ = A x + B u. */
 export function linearizeStep(
   state: Readonly<State>, torque: number, params: Readonly<Partial<Params>>,
-): LinearModel;
+): StepModel;
 
 /**
  * The regulator with the least sum of xᵀ Q x + R u² over all steps, about an equilibrium: by
@@ -48,11 +57,16 @@ export function regulator(
  * of the torque of gravity when it is level and the largest torque u.
  */
 export interface Cost {
-  /** Of 2 − 2 cos x, for the deviation x of each angle from upright, 1/s. Default: [0, 0]. */
+  /**
+   * Q of xᵀ Q x for the deviation x from the target, symmetric: 1/(rad² s), 1/rad² and s/rad².
+   * Default: zeros.
+   */
+  q: Matrix;
+  /** The same of the state after the plan: 1/rad², s/rad² and s²/rad². Default: zeros. */
+  qf: Matrix;
+  /** Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s. Default: [0, 0]. */
   angles: readonly [number, number];
-  /** Of the squares of the velocities, s/rad². Default: [0, 0]. */
-  velocities: readonly [number, number];
-  /** Of the square of the torque, 1/((N m)² s). Default: 0.1 / (T u²). */
+  /** Of the squared difference of the torque from that of the target. Default: 0.1 / (T u²). */
   torque: number;
   /** Of the square of the torque's change from step to step, 1/(N m)². Default: 0. */
   torqueChange: number;
@@ -60,9 +74,9 @@ export interface Cost {
   power: number;
   /** Of the time that the tip is below `height`, 1/s. Default: 0.4 / T. */
   below: number;
-  /** Height of the tip above the fixed joint, m. Default: that of the upright tip. */
+  /** Height of the tip above the fixed joint, m. Default: that of the target's tip. */
   height: number;
-  /** `below` costs half so far below `height`, m; above 0. Default: a tenth of the height. */
+  /** `below` costs half so far below `height`, m; above 0. Default: a tenth of the length. */
   margin: number;
   /** Of the distance at the end from what the regulator holds. Default: 20. */
   arrival: number;
@@ -74,9 +88,14 @@ export interface Plan {
   states: Float32Array;
   /** N m. */
   torques: Float32Array;
-  /** What to add to the torque for each deviation from the state, N m per rad and per rad/s. */
+  /** K of torque − K x for the deviation x from the state, N m per rad and per rad/s. */
   gains: Float32Array;
+  /** What holds the target after the steps: the numbers of Rust's `Feedback`. */
+  after: Float32Array;
 }
+
+/** The torque that follows a plan at a step, and after it holds the target, N m: unlimited. */
+export function planTorque(plan: Plan, step: number, state: Readonly<State>): number;
 
 export interface PlanOptions {
   /** The most steps of a plan, from 1. */
@@ -87,24 +106,36 @@ export interface PlanOptions {
   seed?: Seed;
 }
 
-/** Plans swing-ups, and follows them: bit-identical to Rust's `Planner<Damped<Fast>>`. */
+/** Plans motions to a target: bit-identical to Rust's `Planner<Damped<Fast>>`. */
 export class Planner {
   /**
-   * For a largest torque, N m, and parameters whose `dt` is the time between two decisions. No plan
-   * reaches the bounds of the velocities.
+   * For a largest torque, N m, and parameters whose `dt` is the time between two decisions. The
+   * target is upright, or balanced with an `elbow` angle, rad. No plan reaches the bounds of the
+   * velocities.
    */
-  constructor(params: Readonly<Partial<Params>>, limit: number, cost?: Readonly<Partial<Cost>>);
-  /** A plan from a state to upright, or `null` if no try has found one. May take seconds. */
+  constructor(
+    params: Readonly<Partial<Params>>, limit: number, cost?: Readonly<Partial<Cost>>,
+    elbow?: number,
+  );
+  /** A plan from a state to the target, or `null` if no try has found one. May take seconds. */
   plan(start: Readonly<State>, options: PlanOptions): Plan | null;
   /**
    * Improves a plan in place, which then begins in the state `start`. Returns its cost: the lower,
    * the better.
    */
   improve(start: Readonly<State>, iterations: number, plan: Plan): number;
-  /** The torque at a step, N m: that of the plan, then that of the regulator. Unlimited. */
-  follow(plan: Plan, step: number, state: Readonly<State>): number;
-  /** The torque without a plan, N m, up to the largest: pumps energy, and then regulates. */
-  decide(state: Readonly<State>): number;
+  /** As that of an acrobot. */
+  free(): void;
+  /** Calls `free()`: for `using`. */
+  [Symbol.dispose](): void;
+}
+
+/** Swings up without a plan: pumps energy, and then holds. Bit-identical to Rust's `SwingUp`. */
+export class SwingUp {
+  /** For a largest torque, N m, and parameters whose `dt` is the time between two decisions. */
+  constructor(params: Readonly<Partial<Params>>, limit: number);
+  /** The torque at a state, N m, up to the largest. */
+  torque(state: Readonly<State>): number;
   /** As that of an acrobot. */
   free(): void;
   /** Calls `free()`: for `using`. */

@@ -1,4 +1,5 @@
-// Linear models, regulators and a planner, in a separate module, as control.d.ts describes them.
+// Linear models, regulators, plans and swinging up without one, in a separate module, as
+// control.d.ts describes them.
 
 import {
   Kept, accept, allocated, call, checkNumber, elements, parameters, readSlots, writeSeed,
@@ -13,14 +14,14 @@ export { moduleBytes, setModule } from "./wasm.js";
 
 /** The weights of a plan's cost, in the order of the module: their words follow the parameters. */
 const COST = [
-  "angles[0]", "angles[1]", "velocities[0]", "velocities[1]", "torque", "torqueChange", "power",
-  "below", "height", "margin", "arrival",
+  "angles[0]", "angles[1]", "torque", "torqueChange", "power", "below", "height", "margin",
+  "arrival",
 ];
 /**
- * The first words of a regulator's weights and of a state, which is written after all other
- * arguments, because reading these can run code.
+ * The first words of a regulator's weights, of a cost's matrices, and of a state, which is written
+ * after all other arguments, because reading these can run code.
  */
-const [WEIGHTS, STATE_WORD] = [22, 64];
+const [WEIGHTS, MATRICES, STATE_WORD] = [22, 31, 64];
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
 
 /** Rust's messages, by the kind of error less 4. */
@@ -31,16 +32,16 @@ const MESSAGES = [
   (value, name) =>
     `${name} must be positive semidefinite, got elements of up to ${value} in size after the ` +
     "elimination of its positive pivots",
-  (value, name, other) =>
-    "the state must be in equilibrium, with velocities of 0 and accelerations of at most " +
-    `${other.toExponential(1)} rad/s², got ${value}`,
+  (value) =>
+    "the state must be in equilibrium: at rest, accelerating at most 0.25 % of a fall, " +
+    `got ${value}`,
   () => "the torque must reach each motion that grows or persists, but does not reach one",
   () => "q must weight each motion that persists, but does not weight one",
   (value) => `the relative error of the gain must be at most 1e-9, got ${value}`,
 ];
 const NOT_FOUND = 11;
 
-/** As `accept`, with the errors of Rust's `ControlError`. */
+/** As `accept`, with the errors of models and regulators. */
 function acceptAll(kind, given) {
   if (kind < 4) return accept(kind, given);
   const [value, , , other] = numbers();
@@ -70,10 +71,14 @@ export function linearizeStep(state, torque, params) {
   return { a, b };
 }
 
-export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
-  const weights = elements("q", q, 4, () => true).flatMap((row, i) =>
-    elements(`q[${i}]`, row, 4, isNumber, "must be a number"),
+/** The elements of a matrix by rows. */
+const matrix = (name, rows) =>
+  elements(name, rows, 4, () => true).flatMap((row, i) =>
+    elements(`${name}[${i}]`, row, 4, isNumber, "must be a number"),
   );
+
+export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
+  const weights = matrix("q", q);
   checkNumber("r", r);
   const weighted = [...weights, r];
   const [costToGo, gain] = compute("regulator", state, torque, params, undefined, weighted);
@@ -82,6 +87,8 @@ export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
 
 /** The arrays of a plan, with their elements for a step: a row in the module. */
 const PLAN = { states: 4, torques: 1, gains: 4 };
+/** The numbers of what holds the target after a plan. */
+const AFTER = 46;
 
 function lengthOf(plan) {
   const length = plan?.torques?.length;
@@ -96,14 +103,21 @@ function knotOf(plan, step) {
   return elements(`plan[${step}]`, row, 9, isFinite32, "must be a finite number");
 }
 
+const NONE = new Float32Array(16);
+
 export class Planner extends Kept {
-  constructor(params, limit, cost = {}) {
+  constructor(params, limit, { q, qf, ...cost } = {}, elbow = 0) {
     const names = parameters();
     const [given, weights] = [readSlots("params", params, names), readSlots("cost", cost, COST)];
     const what = "the largest torque";
     checkNumber(what, limit);
+    checkNumber("elbow", elbow);
+    const matrices = Object.entries({ q, qf }).map(([name, rows]) =>
+      rows === undefined ? NONE : matrix(name, rows),
+    );
     const masks = [writeSlots(given, names), writeSlots(weights, COST, WEIGHTS)];
-    acceptAll(wasm().make(...masks, limit), { ...given, ...weights, [what]: limit });
+    numbers().set(matrices.flatMap((each) => [...each]), MATRICES);
+    acceptAll(wasm().make(...masks, limit, elbow), { ...given, ...weights, elbow, [what]: limit });
     super("planner", allocated("planners", 1, integers()[0]));
   }
 
@@ -136,6 +150,8 @@ export class Planner extends Kept {
     const plan = {};
     for (const [name, size] of Object.entries(PLAN)) plan[name] = new Float32Array(size * length);
     this.#read(plan);
+    call(this, "feedback");
+    plan.after = numbers().slice(0, AFTER);
     return plan;
   }
 
@@ -153,21 +169,35 @@ export class Planner extends Kept {
     this.#read(plan);
     return cost;
   }
+}
 
-  follow(plan, step, state) {
-    if (!Number.isInteger(step) || step < 0) {
-      throw invalid("step must be an integer of at least 0", step);
-    }
-    const isPlanned = step < lengthOf(plan);
-    const knot = isPlanned ? knotOf(plan, step) : [];
-    writeState(state, STATE_WORD);
-    numbers().set(knot);
-    return call(this, "follow", isPlanned);
+export class SwingUp extends Kept {
+  constructor(params, limit) {
+    const names = parameters();
+    const given = readSlots("params", params, names);
+    const what = "the largest torque";
+    checkNumber(what, limit);
+    acceptAll(wasm().make_swing_up(writeSlots(given, names), limit), { ...given, [what]: limit });
+    super("swing-up", allocated("swing-ups", 1, integers()[0]));
   }
 
-  decide(state) {
+  torque(state) {
     const at = writeState(state, STATE_WORD);
-    acceptAll(call(this, "decide"), at);
+    acceptAll(call(this, "swing_up_torque"), at);
     return numbers()[0];
   }
+}
+
+export function planTorque(plan, step, state) {
+  if (!Number.isInteger(step) || step < 0) {
+    throw invalid("step must be an integer of at least 0", step);
+  }
+  const isPlanned = step < lengthOf(plan);
+  const knot = isPlanned ? knotOf(plan, step) : [];
+  const rule = "must be a finite number";
+  const after = isPlanned ? [] : elements("plan.after", plan.after, AFTER, isFinite32, rule);
+  writeState(state, STATE_WORD);
+  numbers().set(knot);
+  numbers().set(after, 9);
+  return wasm().plan_torque(isPlanned);
 }

@@ -3,7 +3,7 @@
 
 import { Acrobot, Batch, moduleBytes, setModule } from "acrobot-rs";
 import type { Action, BatchStep, Context, Options, Params, State, Step, Task } from "acrobot-rs";
-import { Planner, regulator } from "acrobot-rs/control";
+import { Planner, SwingUp, planTorque, regulator } from "acrobot-rs/control";
 import type { Plan } from "acrobot-rs/control";
 import { Learner, energyLaw } from "acrobot-rs/policies";
 
@@ -28,7 +28,7 @@ const actions: Action[] = [energyLaw(acrobot), learner.act(acrobot), acrobot.sam
 
 using planner = new Planner(params, 2, { torqueChange: 1, angles: [0.1, 0] });
 const plan: Plan | null = planner.plan(state, { steps: 500, seed: 7n });
-const torque: number = plan ? planner.follow(plan, 0, state) : planner.decide(state);
+const torque: number = plan ? planTorque(plan, 0, state) : new SwingUp(params, 2).torque(state);
 const eye = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
 const gain: Float32Array = regulator({ dt: 0.05 }, eye, 1).gain;
 
@@ -53,6 +53,6 @@ new Acrobot({ sed: 1 });
 // @ts-expect-error
 new Batch({ seed: 1 });
 // @ts-expect-error
-planner.follow(planner.plan(state, { steps: 500 }), 0, state);
+planTorque(planner.plan(state, { steps: 500 }), 0, state);
 
 export { actions, finals, gain, mode, step, task, torque };

@@ -194,6 +194,6 @@ export class PlannerPolicy {
     const target = isPlanned ? states.subarray(at, at + 4) : [Math.PI, 0, 0, 0];
     const gain = isPlanned ? gains.subarray(at, at + 4) : this.#gain;
     const torque = isPlanned ? torques[step] : 0;
-    return deviation(state, target).reduce((sum, x, i) => sum + gain[i] * x, torque);
+    return deviation(state, target).reduce((sum, x, i) => sum - gain[i] * x, torque);
   }
 }

@@ -1,5 +1,5 @@
 // Plans outside the page's thread. It receives the parameters, a torque and a state, and posts a
-// plan, or null, with the milliseconds it took, and the gain −K of the regulator after the plan.
+// plan, or null, with the milliseconds it took, and the gain of the regulator after the plan.
 
 import { Planner, regulator } from "./acrobot-rs/control.js";
 
@@ -26,7 +26,7 @@ function plan() {
       plan ??= planner.plan(start, { steps, tries: TRIES, seed });
     }
     const duration = performance.now() - began;
-    postMessage({ id, plan, gain: regulator(params, EYE, 1).gain.map((k) => -k), duration });
+    postMessage({ id, plan, gain: regulator(params, EYE, 1).gain, duration });
     planner.free();
   } catch ({ message }) {
     postMessage({ id, error: message });

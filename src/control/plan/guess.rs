@@ -5,6 +5,7 @@ use rand_core::Rng;
 use super::knots::Knot;
 use super::planner::Planner;
 use crate::arithmetic::Arithmetic;
+use crate::control::regulator::step;
 use crate::control::units::Units;
 use crate::error::Error;
 use crate::math::Real;
@@ -46,7 +47,7 @@ impl<A: Arithmetic> Planner<A> {
             let missing = self.energy - machine.energy();
             let state = machine.state();
             let torque = saturate(push + gain * missing * state.dtheta2, self.regulator.limit);
-            machine.step(torque)?;
+            step(machine, torque)?;
             *knot = Knot { state, ..Knot::open(torque) };
         }
         Ok(())

@@ -27,7 +27,8 @@ impl<S: Modeled> Problem<S> {
     ///
     /// Those of [`Cost::new`].
     pub fn swing_up(params: Params<S>, limit: S) -> Result<Self, Error> {
-        Self::balance(params, limit, S::from_f64(0.0))
+        let cost = Cost::new(&params, limit)?;
+        Ok(Self { params, limit, target: State::UPRIGHT, torque: S::from_f64(0.0), cost })
     }
 
     /// To balance with a bent elbow: θ2, rad. The centre of mass is above the fixed joint, and the

@@ -226,7 +226,7 @@ impl<A: Arithmetic> BoundedRegulator<A> {
             if inside > enough {
                 return true;
             }
-            if model.step(saturate(feedback.torque_of(x), *limit)).is_err() {
+            if step(&mut model, saturate(feedback.torque_of(x), *limit)).is_err() {
                 return false;
             }
         }
@@ -243,4 +243,13 @@ pub(in crate::control) fn is_near<S: Real>([theta1, theta2, ..]: [S; 4]) -> bool
 /// Whether both velocities are below their bounds.
 pub(in crate::control) fn is_below<S: Real>(state: State<S>, [bound1, bound2]: [S; 2]) -> bool {
     state.dtheta1.abs() < bound1 && state.dtheta2.abs() < bound2
+}
+
+/// A step out of line, which saves flash.
+#[inline(never)]
+pub(in crate::control) fn step<A: Arithmetic>(
+    machine: &mut Pendulum<A>,
+    torque: A::Scalar,
+) -> Result<(), Error> {
+    machine.step(torque)
 }

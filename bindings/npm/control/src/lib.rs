@@ -1,23 +1,26 @@
-//! The WebAssembly module of `acrobot-rs/control`: linear models, regulators and a planner.
+//! The WebAssembly module of `acrobot-rs/control`: linear models, regulators, a planner and swinging up without one.
 //!
 //! All data except single numbers passes through the words of `memory`. A function returns 0, or
 //! the kind of error, whose details are in the words.
 
+use std::mem::transmute;
 use std::slice;
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::{
-    self, ControlError, Cost, Knot, LinearModel, Lqr, NoPlan, linearize, linearize_step,
-};
+use acrobot::control::model::{LinearModel, StepModel};
+use acrobot::control::plan::{Knot, Plan, Planner, Problem, SwingUp};
+use acrobot::control::regulator::{Feedback, Lqr};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
-use acrobot::{Fast, Params, State};
+use acrobot::{Error, Fast, Params, State};
 use memory::{changed, keep, seed, set, set_numbers, text, zeros};
 
-/// The first words of the weights of a cost or a regulator, after the parameters, and of a state,
-/// after the longest seed.
+/// The first words of the weights of a cost or a regulator, after the parameters, of a cost's Q and
+/// Qf, and of a state, after the longest seed. What follows a plan begins after its knot.
 const WEIGHTS: usize = 22;
+const MATRICES: usize = 31;
 const STATE: usize = 64;
+const AFTER: usize = 9;
 
 #[unsafe(no_mangle)]
 pub extern "C" fn param_names() {
@@ -36,8 +39,8 @@ fn state() -> State<f32> {
 }
 
 /// The pendulum with the parameters in the mask.
-fn pendulum(mask: u32) -> Result<Pendulum<Damped<Fast>>, ControlError> {
-    Ok(Pendulum::new(changed(Params::DEFAULT, mask), state())?)
+fn pendulum(mask: u32) -> Result<Pendulum<Damped<Fast>>, Error> {
+    Pendulum::new(changed(Params::DEFAULT, mask), state())
 }
 
 fn knot() -> Knot<f32> {
@@ -49,21 +52,21 @@ fn knot() -> Knot<f32> {
 
 /// Writes a result, and returns 0, or the kind of error. JavaScript composes the message, as with
 /// `memory::reason`.
-fn write<const N: usize>(result: Result<[f32; N], ControlError>) -> u32 {
+fn write<const N: usize>(result: Result<[f32; N], Error>) -> u32 {
     let (kind, name, values) = match result {
         Ok(values) => {
             set_numbers(values);
             return 0;
         }
-        Err(ControlError::Invalid(error)) => return memory::reason(Err(error)),
-        Err(ControlError::NotFinite { name, value }) => (4, name, [value, 0.0]),
-        Err(ControlError::NotSymmetric { name, upper, lower }) => (5, name, [upper, lower]),
-        Err(ControlError::NotSemidefinite { name, value }) => (6, name, [value, 0.0]),
-        Err(ControlError::NotInEquilibrium { rate, largest }) => (7, "", [rate, largest]),
-        Err(ControlError::NotStabilizable) => (8, "", [0.0; 2]),
-        Err(ControlError::IllConditioned { error }) => (10, "", [error, 0.0]),
-        // `NotDetectable`: the crate has no other error.
-        Err(_) => (9, "", [0.0; 2]),
+        Err(Error::NotFinite { name, value }) => (4, name, [value, 0.0]),
+        Err(Error::NotSymmetric { name, upper, lower }) => (5, name, [upper, lower]),
+        Err(Error::NotSemidefinite { name, value }) => (6, name, [value, 0.0]),
+        Err(Error::NotInEquilibrium { rate, .. }) => (7, "", [rate, 0.0]),
+        Err(Error::NotStabilizable) => (8, "", [0.0; 2]),
+        Err(Error::IllConditioned { error }) => (10, "", [error, 0.0]),
+        Err(Error::NotDetectable) => (9, "", [0.0; 2]),
+        Err(Error::NoPlan { .. }) => (11, "", [0.0; 2]),
+        Err(error) => return memory::reason(Err(error)),
     };
     let [address, len] = text(name);
     let [value, other] = values.map(|value| (value as f32).to_bits());
@@ -72,7 +75,7 @@ fn write<const N: usize>(result: Result<[f32; N], ControlError>) -> u32 {
 }
 
 /// Writes a matrix by rows, then a vector.
-fn write_matrix(result: Result<([[f32; 4]; 4], [f32; 4]), ControlError>) -> u32 {
+fn write_matrix(result: Result<([[f32; 4]; 4], [f32; 4]), Error>) -> u32 {
     write(result.map(|([a, b, c, d], vector)| {
         let mut numbers = [0.0; 20];
         let (rows, _) = numbers.as_chunks_mut();
@@ -84,9 +87,11 @@ fn write_matrix(result: Result<([[f32; 4]; 4], [f32; 4]), ControlError>) -> u32 
 /// Writes A and B of a pendulum: of a step, or of the equations of motion.
 #[unsafe(no_mangle)]
 pub extern "C" fn linear_model(mask: u32, torque: f32, of_step: bool) -> u32 {
-    let linearize = if of_step { linearize_step } else { linearize };
-    let model = pendulum(mask).and_then(|pendulum| linearize(&pendulum, torque));
-    write_matrix(model.map(|LinearModel { a, b }| (a, b)))
+    let model = pendulum(mask).and_then(|pendulum| match of_step {
+        true => pendulum.linearize_step(torque).map(|StepModel { a, b }| (a, b)),
+        false => pendulum.linearize(torque).map(|LinearModel { a, b }| (a, b)),
+    });
+    write_matrix(model)
 }
 
 /// Writes the cost of all steps and the gain of the regulator of a pendulum.
@@ -94,24 +99,25 @@ pub extern "C" fn linear_model(mask: u32, torque: f32, of_step: bool) -> u32 {
 pub extern "C" fn regulator(mask: u32, torque: f32) -> u32 {
     let q = [0, 4, 8, 12].map(|row| numbers(WEIGHTS + row));
     let [r] = numbers(WEIGHTS + 16);
-    let regulator = pendulum(mask).and_then(|p| control::regulator(&p, torque, &q, r));
+    let regulator = pendulum(mask).and_then(|p| p.regulator(torque, &q, r));
     write_matrix(regulator.map(|Lqr { gain, cost_to_go }| (cost_to_go, gain)))
 }
 
-pub struct Planner {
-    planner: control::Planner<Damped<Fast>>,
-    knots: Vec<Knot<f32>>,
+/// What JavaScript keeps.
+#[expect(clippy::large_enum_variant, reason = "each is in a box")]
+pub enum Kept {
+    Planner(Planner<Damped<Fast>>, Vec<Knot<f32>>),
+    SwingUp(SwingUp<Damped<Fast>>),
 }
 
-/// The default weights, with those in the mask.
-fn cost(params: &Params<f32>, limit: f32, mask: u32) -> Result<Cost<f32>, ControlError> {
-    let mut cost = Cost::new(params, limit)?;
-    let ([angle1, angle2], [velocity1, velocity2]) = (&mut cost.angles, &mut cost.velocities);
+/// The problem to stand with an elbow angle, with the weights in the mask.
+fn problem(params: Params<f32>, limit: f32, elbow: f32, mask: u32) -> Result<Problem<f32>, Error> {
+    let mut problem = Problem::balance(params, limit, elbow)?;
+    let cost = &mut problem.cost;
+    let [angle1, angle2] = &mut cost.angles;
     let weights = [
         angle1,
         angle2,
-        velocity1,
-        velocity2,
         &mut cost.torque,
         &mut cost.torque_change,
         &mut cost.power,
@@ -120,54 +126,71 @@ fn cost(params: &Params<f32>, limit: f32, mask: u32) -> Result<Cost<f32>, Contro
         &mut cost.margin,
         &mut cost.arrival,
     ];
-    for (i, (weight, given)) in weights.into_iter().zip(numbers::<11>(WEIGHTS)).enumerate() {
+    for (i, (weight, given)) in weights.into_iter().zip(numbers::<9>(WEIGHTS)).enumerate() {
         if mask >> i & 1 != 0 {
             *weight = given;
         }
     }
-    Ok(cost)
+    cost.q = [0, 4, 8, 12].map(|row| numbers(MATRICES + row));
+    cost.qf = [16, 20, 24, 28].map(|row| numbers(MATRICES + row));
+    Ok(problem)
 }
 
-/// Makes a planner with the parameters in the mask and the weights in the other one. Writes its
-/// address, or 0 without memory.
-#[unsafe(no_mangle)]
-pub extern "C" fn make(mask: u32, weights: u32, limit: f32) -> u32 {
-    let params = changed(Params::DEFAULT, mask);
-    let cost = cost(&params, limit, weights);
-    match cost.and_then(|cost| control::Planner::with_cost(params, limit, cost)) {
-        Ok(planner) => {
-            let planner = keep(Planner { planner, knots: Vec::new() });
-            set(&[planner.map_or(0, |planner| Box::into_raw(planner).addr() as u32)]);
+/// Writes the address of what JavaScript keeps, or 0 without memory.
+fn made(kept: Result<Kept, Error>) -> u32 {
+    match kept {
+        Ok(kept) => {
+            set(&[keep(kept).map_or(0, |kept| Box::into_raw(kept).addr() as u32)]);
             0
         }
         Err(error) => write::<0>(Err(error)),
     }
 }
 
+/// Makes a planner with the parameters in the mask and the weights in the other one.
 #[unsafe(no_mangle)]
-pub extern "C" fn kept_free(planner: Box<Planner>) {
-    drop(planner);
+pub extern "C" fn make(mask: u32, weights: u32, limit: f32, elbow: f32) -> u32 {
+    let problem = problem(changed(Params::DEFAULT, mask), limit, elbow, weights);
+    let planner = problem.and_then(|problem| Planner::new(&problem));
+    made(planner.map(|planner| Kept::Planner(planner, Vec::new())))
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn make_swing_up(mask: u32, limit: f32) -> u32 {
+    made(SwingUp::new(changed(Params::DEFAULT, mask), limit).map(Kept::SwingUp))
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn kept_free(kept: Box<Kept>) {
+    drop(kept);
 }
 
 /// Makes memory for a plan, if there is any.
 #[unsafe(no_mangle)]
-pub extern "C" fn resize(planner: &mut Planner, steps: usize) -> bool {
+pub extern "C" fn resize(kept: &mut Kept, steps: usize) -> bool {
     // SAFETY: a knot has numbers only.
-    let knots = unsafe { zeros(steps) };
-    knots.map(|knots| planner.knots = knots).is_some()
+    let (Kept::Planner(_, knots), Some(new)) = (kept, unsafe { zeros(steps) }) else {
+        return false;
+    };
+    *knots = new;
+    true
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn read_knot(planner: &Planner, step: usize) {
-    if let Some(Knot { state, torque, gain: [k1, k2, k3, k4], .. }) = planner.knots.get(step) {
+pub extern "C" fn read_knot(kept: &Kept, step: usize) {
+    if let Kept::Planner(_, knots) = kept
+        && let Some(Knot { state, torque, gain: [k1, k2, k3, k4], .. }) = knots.get(step)
+    {
         let State { theta1, theta2, dtheta1, dtheta2 } = *state;
         set_numbers([theta1, theta2, dtheta1, dtheta2, *torque, *k1, *k2, *k3, *k4]);
     }
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn set_knot(planner: &mut Planner, step: usize) {
-    if let Some(place) = planner.knots.get_mut(step) {
+pub extern "C" fn set_knot(kept: &mut Kept, step: usize) {
+    if let Kept::Planner(_, knots) = kept
+        && let Some(place) = knots.get_mut(step)
+    {
         *place = knot();
     }
 }
@@ -175,35 +198,49 @@ pub extern "C" fn set_knot(planner: &mut Planner, step: usize) {
 /// Plans with a seed of so many words. Writes the length of the plan, or returns 11 if it finds
 /// none.
 #[unsafe(no_mangle)]
-pub extern "C" fn plan(planner: &mut Planner, words: usize, tries: u32) -> u32 {
+pub extern "C" fn plan(kept: &mut Kept, words: usize, tries: u32) -> u32 {
     let mut rng = Pcg64::from(seed(words));
-    match planner.planner.plan(state(), tries, &mut rng, &mut planner.knots) {
+    let Kept::Planner(planner, knots) = kept else { return 0 };
+    match planner.plan_into(state(), tries, &mut rng, knots) {
         Ok(plan) => {
-            set(&[plan.len() as u32]);
+            set(&[plan.knots.len() as u32]);
             0
         }
-        Err(NoPlan::Invalid(error)) => write::<0>(Err(error)),
-        Err(NoPlan::NotFound { .. }) => 11,
+        Err(error) => write::<0>(Err(error)),
     }
 }
 
 /// Improves the plan. Writes its cost.
 #[unsafe(no_mangle)]
-pub extern "C" fn improve(planner: &mut Planner, iterations: u32) -> u32 {
-    let cost = planner.planner.improve(state(), iterations, &mut planner.knots);
-    write(cost.map(|cost| [cost]))
+pub extern "C" fn improve(kept: &mut Kept, iterations: u32) -> u32 {
+    let Kept::Planner(planner, knots) = kept else { return 0 };
+    write(planner.improve(state(), iterations, knots).map(|cost| [cost]))
 }
 
-/// The torque that follows the knot in the words, or that of the regulator after a plan.
+/// Writes what holds the target after a plan.
 #[unsafe(no_mangle)]
-pub extern "C" fn follow(planner: &Planner, is_planned: bool) -> f32 {
+pub extern "C" fn feedback(kept: &Kept) {
+    if let Kept::Planner(planner, _) = kept {
+        // SAFETY: a feedback has these numbers only.
+        set_numbers(unsafe {
+            transmute::<Feedback<f32>, [f32; 46]>(*planner.regulator().feedback())
+        });
+    }
+}
+
+/// The torque of the knot in the words, or that of the feedback after it.
+#[unsafe(no_mangle)]
+pub extern "C" fn plan_torque(is_planned: bool) -> f32 {
     let knot = knot();
-    let plan = if is_planned { slice::from_ref(&knot) } else { &[] };
-    planner.planner.follow(plan, 0, state())
+    let knots = if is_planned { slice::from_ref(&knot) } else { &[] };
+    // SAFETY: a feedback has these numbers only, and any are valid.
+    let after = unsafe { transmute::<[f32; 46], Feedback<f32>>(numbers(AFTER)) };
+    Plan { knots, after }.torque(0, state())
 }
 
 /// Writes the torque without a plan.
 #[unsafe(no_mangle)]
-pub extern "C" fn decide(planner: &mut Planner) -> u32 {
-    write(planner.planner.decide(state()).map(|torque| [torque]).map_err(ControlError::Invalid))
+pub extern "C" fn swing_up_torque(kept: &mut Kept) -> u32 {
+    let Kept::SwingUp(swing_up) = kept else { return 0 };
+    write(swing_up.torque(state()).map(|torque| [torque]))
 }
