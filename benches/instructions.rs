@@ -50,7 +50,7 @@ fn alone<A: Arithmetic>() {
     let mut acrobot = TimeLimit::of(Acrobot::<A>::new(0));
     counted(&mut || {
         for &action in &actions {
-            if black_box(acrobot.step(action)).done() {
+            if black_box(acrobot.step(action)).is_done() {
                 acrobot.reset();
             }
         }

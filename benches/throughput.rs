@@ -67,7 +67,7 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
     let mut acrobot = TimeLimit::of(Acrobot::<A>::new(0));
     let ours = || {
         for &action in &actions {
-            if black_box(acrobot.step(action)).done() {
+            if black_box(acrobot.step(action)).is_done() {
                 acrobot.reset();
             }
         }

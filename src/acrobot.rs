@@ -33,7 +33,7 @@ impl<O> Step<O> {
     /// Whether the episode is over: `terminated` or `truncated`.
     #[must_use]
     #[inline]
-    pub fn done(&self) -> bool {
+    pub fn is_done(&self) -> bool {
         self.terminated || self.truncated
     }
 }

@@ -191,9 +191,9 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// Whether the episode of acrobot `index`, if there is one, has ended and it waits for a reset:
     /// by the next step or, with [`Autoreset::Disabled`], by the caller.
     #[must_use]
-    pub fn ended_of(&self, index: usize) -> Option<bool> {
-        let (_, ended) = self.block_of(index).ok()?.progress(index % N)?;
-        Some(ended)
+    pub fn is_done(&self, index: usize) -> Option<bool> {
+        let (_, is_done) = self.block_of(index).ok()?.progress(index % N)?;
+        Some(is_done)
     }
 
     /// The state of acrobot `index`, if there is one.
@@ -278,7 +278,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     pub fn set_autoreset(&mut self, autoreset: Autoreset) {
         self.settings.autoreset = autoreset;
         for (block, generators, own) in each_block(&mut self.storage) {
-            block.reset_ended(&self.settings, generators, own);
+            block.reset_done(&self.settings, generators, own);
         }
     }
 }

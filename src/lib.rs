@@ -16,7 +16,7 @@
 //!         false => Action::Positive,
 //!     };
 //!     let step = env.step(action);
-//!     if step.done() {
+//!     if step.is_done() {
 //!         break;
 //!     }
 //!     observation = step.observation;

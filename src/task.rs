@@ -82,21 +82,21 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
 
     /// Whether the new state ends the episode: never, unless it is replaced.
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, _: &Seen<V>) -> V::Mask {
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, _: &Seen<V>) -> V::Mask {
         V::splat(A::Scalar::ZERO).above(A::Scalar::ZERO)
     }
 
-    /// The reward of a step to the new state, which `ended` the episode or not. `torque` is the one
-    /// that acted, N m, with its noise. −1, or 0 at the end, unless it is replaced.
+    /// The reward of a step to the new state, which `terminated` the episode or not. `torque` is
+    /// the one that acted, N m, with its noise. −1, or 0 if `terminated`, unless it is replaced.
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
         _seen: &Seen<V>,
         _params: &Params<V>,
         _torque: V,
-        ended: V::Mask,
+        terminated: V::Mask,
     ) -> V::Single {
-        V::Single::either(ended, 0.0, -1.0)
+        V::Single::either(terminated, 0.0, -1.0)
     }
 }
 

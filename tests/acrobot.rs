@@ -69,14 +69,14 @@ fn time_limits_truncate_whether_or_not_an_episode_terminates() {
         assert!((1..limit).all(|_| !acrobot.step(Action::Zero).truncated));
         acrobot.set_state(State::UPRIGHT).unwrap();
         let last = acrobot.step(Action::Zero);
-        assert!(last.terminated && last.truncated && last.done(), "both on the last step");
+        assert!(last.terminated && last.truncated && last.is_done(), "both on the last step");
         acrobot.set_state(State::HANGING).unwrap();
         let beyond = acrobot.step(Action::Zero);
-        assert!(!beyond.terminated && beyond.truncated && beyond.done(), "as in Gymnasium");
+        assert!(!beyond.terminated && beyond.truncated && beyond.is_done(), "as in Gymnasium");
         acrobot.reset();
-        assert!(!acrobot.step(Action::Zero).done());
+        assert!(!acrobot.step(Action::Zero).is_done());
         acrobot.set_max_steps(3.try_into().unwrap());
-        assert!(!acrobot.step(Action::Zero).done());
+        assert!(!acrobot.step(Action::Zero).is_done());
         assert!(acrobot.step(Action::Zero).truncated, "the count goes on");
         assert_eq!(acrobot.elapsed_steps(), 3);
     }

@@ -33,7 +33,7 @@ fn environments_play_gymnasiums_runs() {
             found.add((step.reward == 0.0).into());
             found.add(step.terminated.into());
             found.add(step.truncated.into());
-            if step.done() {
+            if step.is_done() {
                 ends += 1;
                 env.reset();
             }

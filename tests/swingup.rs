@@ -150,6 +150,6 @@ fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
     assert!(quadrants.into_iter().all(|count| count > 30), "{quadrants:?}");
 
     let mut episode = TimeLimit::new(acrobot, Swingup::MAX_STEPS);
-    let lengths = (1..).find(|_| episode.step(Action::Positive).done());
+    let lengths = (1..).find(|_| episode.step(Action::Positive).is_done());
     assert_eq!(lengths, Some(1000));
 }

@@ -57,7 +57,7 @@ impl Task for Reach {
     }
 
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
         (-self.beyond::<A, V>(seen)).above(Real::ZERO)
     }
 
@@ -67,11 +67,11 @@ impl Task for Reach {
         seen: &Seen<V>,
         params: &Params<V>,
         torque: V,
-        ended: V::Mask,
+        terminated: V::Mask,
     ) -> V::Single {
         let [_, [x, y]] = seen.positions(params);
         let cost = (x * x + y * y) * V::splat(Real::from_f64(0.1)) + torque * torque;
-        V::Single::either(ended, 100.0, 0.0) - cost.to_f32()
+        V::Single::either(terminated, 100.0, 0.0) - cost.to_f32()
     }
 }
 

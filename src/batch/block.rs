@@ -23,7 +23,7 @@ pub struct Block<A: Arithmetic = Fast, const N: usize = 16> {
     sin_cos: [SinCos<Lanes<A::Scalar, N>>; 2],
     elapsed_steps: [u32; N],
     /// Whether the lane's episode has ended and it waits for a reset.
-    ended: [bool; N],
+    done: [bool; N],
 }
 
 impl<A: Arithmetic, const N: usize> Block<A, N> {
@@ -34,7 +34,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         y: [Self::ZEROS; 4],
         sin_cos: [(Self::ZEROS, Self::ZEROS); 2],
         elapsed_steps: [0; N],
-        ended: [false; N],
+        done: [false; N],
     };
 }
 
@@ -64,12 +64,12 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
 
     /// The number of steps of a lane's episode, and whether that has ended.
     pub(super) fn progress(&self, lane: usize) -> Option<(u32, bool)> {
-        Some((*self.elapsed_steps.get(lane)?, *self.ended.get(lane)?))
+        Some((*self.elapsed_steps.get(lane)?, *self.done.get(lane)?))
     }
 
-    pub(super) fn set_progress(&mut self, lane: usize, elapsed_steps: u32, ended: bool) {
+    pub(super) fn set_progress(&mut self, lane: usize, elapsed_steps: u32, is_done: bool) {
         set(&mut self.elapsed_steps, lane, elapsed_steps);
-        set(&mut self.ended, lane, ended);
+        set(&mut self.done, lane, is_done);
     }
 
     pub(super) fn begin_episode(&mut self, lane: usize, state: State<A::Scalar>) {
@@ -105,15 +105,15 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     }
 
     /// With `SameStep` no lane waits: resets those whose episode has ended.
-    pub(super) fn reset_ended<T: Task>(
+    pub(super) fn reset_done<T: Task>(
         &mut self,
         settings: &Settings<A, T>,
         generators: &mut [Pcg64],
         own: Option<Own<'_, A, N>>,
     ) {
         if settings.autoreset == Autoreset::SameStep {
-            let ended = self.ended;
-            self.reset(&ended, settings, settings.bounds, generators, own);
+            let done = self.done;
+            self.reset(&done, settings, settings.bounds, generators, own);
         }
     }
 
@@ -162,25 +162,25 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     ) -> Results<N> {
         let torques = inputs.torques(&model.params.torques);
         let resets = settings.autoreset == Autoreset::NextStep;
-        let generators = generators.iter_mut().zip(&self.ended);
-        let generators = generators.map(|(rng, ended)| (!(resets & ended)).then_some(rng));
+        let generators = generators.iter_mut().zip(&self.done);
+        let generators = generators.map(|(rng, done)| (!(resets & done)).then_some(rng));
         let torques = episode::disturb(torques, model.params.torque_noise, generators);
         let (y, sin_cos) = (&mut self.y, &mut self.sin_cos);
         let (Lanes(rewards), terminated) =
             episode::step::<A, T, Lanes<_, N>>(model, y, sin_cos, torques, &settings.task);
-        let (mut truncated, mut ended) = ([false; N], [false; N]);
-        let results = truncated.iter_mut().zip(&mut ended);
-        for ((elapsed_steps, terminated), (truncated, ended)) in
+        let (mut truncated, mut done) = ([false; N], [false; N]);
+        let results = truncated.iter_mut().zip(&mut done);
+        for ((elapsed_steps, terminated), (truncated, done)) in
             self.elapsed_steps.iter_mut().zip(&terminated).zip(results)
         {
             *truncated = episode::count(elapsed_steps, settings.max_steps);
-            *ended = *terminated | *truncated;
+            *done = *terminated | *truncated;
         }
         let resets = match settings.autoreset {
-            Autoreset::NextStep => core::mem::replace(&mut self.ended, ended),
-            Autoreset::SameStep => ended,
+            Autoreset::NextStep => core::mem::replace(&mut self.done, done),
+            Autoreset::SameStep => done,
             Autoreset::Disabled => {
-                self.ended.iter_mut().zip(ended).for_each(|(waits, ended)| *waits |= ended);
+                self.done.iter_mut().zip(done).for_each(|(waits, done)| *waits |= done);
                 [false; N]
             }
         };

@@ -22,7 +22,7 @@ pub struct Member<A: Arithmetic> {
     /// The number of steps since the last reset.
     pub elapsed_steps: u32,
     /// Whether its episode has ended and it waits for a reset.
-    pub ended: bool,
+    pub is_done: bool,
     /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,
 }
@@ -32,12 +32,12 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     #[must_use]
     pub fn member(&self, index: usize) -> Option<Member<A>> {
         let block = self.block_of(index).ok()?;
-        let (elapsed_steps, ended) = block.progress(index % N)?;
+        let (elapsed_steps, is_done) = block.progress(index % N)?;
         Some(Member {
             params: self.params_of(index)?,
             state: block.state(index % N)?,
             elapsed_steps,
-            ended,
+            is_done,
             rng: self.storage.slices().generators.get(index)?.clone(),
         })
     }
@@ -64,10 +64,10 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         if let (Some(block), Some(rng)) = (blocks.get_mut(index / N), generators.get_mut(index % N))
         {
             block.set_state(index % N, member.state);
-            block.set_progress(index % N, member.elapsed_steps, member.ended);
+            block.set_progress(index % N, member.elapsed_steps, member.is_done);
             *rng = member.rng;
             let own = lane_params.get_mut(index / N).zip(draws.as_deref());
-            block.reset_ended(&self.settings, generators, own);
+            block.reset_done(&self.settings, generators, own);
         }
         Ok(())
     }

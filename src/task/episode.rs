@@ -24,8 +24,8 @@ pub(crate) fn step<A: Arithmetic, T: Task, V: Numbers<A::Scalar>>(
 ) -> Outcome<A::Scalar, V> {
     advance::<A, V>(model, y, sin_cos, torque);
     let seen = Seen { state: (*y).into(), sin_cos: *sin_cos };
-    let ended = task.ended::<A, V>(&seen);
-    (task.reward::<A, V>(&seen, &model.params, torque, ended), ended)
+    let terminated = task.terminated::<A, V>(&seen);
+    (task.reward::<A, V>(&seen, &model.params, torque, terminated), terminated)
 }
 
 /// Adds a draw from \[−noise, noise) to each torque with noise, from its generator. One without

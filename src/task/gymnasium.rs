@@ -36,7 +36,7 @@ impl Task for Gymnasium {
 
     /// Whether −cos θ1 − cos(θ1 + θ2) > 1, whatever the lengths of the links.
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
         let [(sin1, cos1), (sin2, cos2)] = seen.sin_cos;
         let cos_sum = match A::FORM {
             Form::Lean => cos1 * cos2 - sin1 * sin2,
@@ -85,7 +85,7 @@ impl Task for GymnasiumV0 {
     }
 
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
-        Gymnasium.ended::<A, V>(seen)
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
+        Gymnasium.terminated::<A, V>(seen)
     }
 }

@@ -122,6 +122,6 @@ fn rejected_changes_change_nothing() {
     assert_eq!(rows, [[9.0; 6]; 4]);
     assert_eq!((batch.state_of(3), batch.member(3)), (None, None));
     assert_eq!((batch.params_of(3), batch.elapsed_steps_of(3)), (None, None));
-    assert_eq!((batch.draws(), batch.ended_of(3)), (&Draws::NONE, None));
+    assert_eq!((batch.draws(), batch.is_done(3)), (&Draws::NONE, None));
     assert_eq!(members(&batch), before);
 }

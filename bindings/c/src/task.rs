@@ -34,10 +34,10 @@ impl Task for AnyTask {
     }
 
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
         match self {
-            Self::Gymnasium => Gymnasium.ended::<A, V>(seen),
-            Self::Balance => Balance.ended::<A, V>(seen),
+            Self::Gymnasium => Gymnasium.terminated::<A, V>(seen),
+            Self::Balance => Balance.terminated::<A, V>(seen),
         }
     }
 
@@ -47,11 +47,11 @@ impl Task for AnyTask {
         seen: &Seen<V>,
         params: &Params<V>,
         torque: V,
-        ended: V::Mask,
+        terminated: V::Mask,
     ) -> V::Single {
         match self {
-            Self::Gymnasium => Gymnasium.reward::<A, V>(seen, params, torque, ended),
-            Self::Balance => Balance.reward::<A, V>(seen, params, torque, ended),
+            Self::Gymnasium => Gymnasium.reward::<A, V>(seen, params, torque, terminated),
+            Self::Balance => Balance.reward::<A, V>(seen, params, torque, terminated),
         }
     }
 }

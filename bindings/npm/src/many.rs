@@ -70,7 +70,7 @@ pub struct Many {
     truncated: Vec<bool>,
     final_observations: Vec<[f32; 6]>,
     /// Whose episodes have ended: in this step, or with `Disabled` since the last reset.
-    ended: Vec<bool>,
+    done: Vec<bool>,
 }
 
 fn memory<A: Arithmetic>(count: usize, own_params: bool) -> Option<Memory<A>> {
@@ -103,7 +103,7 @@ impl Many {
                 terminated: zeros(count)?,
                 truncated: zeros(count)?,
                 final_observations: zeros(count)?,
-                ended: zeros(count)?,
+                done: zeros(count)?,
             }
         };
         many.mask.fill(true);
@@ -155,7 +155,7 @@ pub extern "C" fn settings(many: &Many) {
         many.rewards.as_ptr().addr(),
         many.terminated.as_ptr().addr(),
         many.truncated.as_ptr().addr(),
-        many.ended.as_ptr().addr(),
+        many.done.as_ptr().addr(),
         many.final_observations.as_ptr().addr(),
         many.actions.as_ptr().addr(),
         many.mask.as_ptr().addr(),
@@ -297,10 +297,10 @@ pub extern "C" fn step(many: &mut Many, given_torques: bool) -> bool {
         }
         let lasts = batch.autoreset() == Autoreset::Disabled;
         let flags = many.terminated.iter().zip(&many.truncated);
-        for (i, (ended, (terminated, truncated))) in many.ended.iter_mut().zip(flags).enumerate() {
-            *ended = terminated | truncated;
+        for (i, (done, (terminated, truncated))) in many.done.iter_mut().zip(flags).enumerate() {
+            *done = terminated | truncated;
             if lasts {
-                *ended |= batch.ended_of(i).unwrap_or_default();
+                *done |= batch.is_done(i).unwrap_or_default();
             }
         }
     });

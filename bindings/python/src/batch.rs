@@ -203,10 +203,10 @@ impl Batch {
     }
 
     /// The first environment, if any, whose episode has ended and that waits for a reset.
-    fn first_ended(slf: &Bound<'_, Self>) -> PyResult<Option<usize>> {
+    fn first_done(slf: &Bound<'_, Self>) -> PyResult<Option<usize>> {
         let this = alone(slf)?;
         Ok(with_batch!(&this.engine, many => {
-            (0..many.batch.len()).find(|&index| many.batch.ended_of(index) == Some(true))
+            (0..many.batch.len()).find(|&index| many.batch.is_done(index) == Some(true))
         }))
     }
 

@@ -85,8 +85,8 @@ impl Task for AnyTask {
     }
 
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
-        with_task!(self, Is => Is::DEFAULT.ended::<A, V>(seen))
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
+        with_task!(self, Is => Is::DEFAULT.terminated::<A, V>(seen))
     }
 
     #[inline(always)]
@@ -95,8 +95,8 @@ impl Task for AnyTask {
         seen: &Seen<V>,
         params: &Params<V>,
         torque: V,
-        ended: V::Mask,
+        terminated: V::Mask,
     ) -> V::Single {
-        with_task!(self, Is => Is::DEFAULT.reward::<A, V>(seen, params, torque, ended))
+        with_task!(self, Is => Is::DEFAULT.reward::<A, V>(seen, params, torque, terminated))
     }
 }

@@ -24,7 +24,7 @@ pub fn play(env: &mut Env, mut policy: impl FnMut(&State<f32>) -> Action) -> (f3
     loop {
         let step = env.step(policy(&env.state()));
         sum += step.reward;
-        if step.done() {
+        if step.is_done() {
             return (sum, step.terminated);
         }
     }

@@ -140,7 +140,7 @@ impl<A: Arithmetic> Snapshot for Member<A> {
             params: Params { dynamics: Dynamics::Nips, ..*acrobot.params() },
             state: acrobot.state(),
             elapsed_steps: 3,
-            ended: true,
+            is_done: true,
             rng: acrobot.rng().clone(),
         }
     }

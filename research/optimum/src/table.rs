@@ -47,7 +47,7 @@ fn mean(mut policy: impl FnMut(&State<f32>) -> Action) -> f64 {
         loop {
             let step = env.step(policy(&env.state()));
             sum += f64::from(step.reward);
-            if step.done() {
+            if step.is_done() {
                 break;
             }
         }

@@ -40,7 +40,7 @@ fn episode<A: Arithmetic>(number: u64) -> u64 {
         add_seen(&mut digest, acrobot.inner(), step.observation);
         digest.add(step.reward.to_bits().into());
         digest.add(u64::from(step.terminated) << 1 | u64::from(step.truncated));
-        if step.done() {
+        if step.is_done() {
             let start = acrobot.reset();
             add_seen(&mut digest, acrobot.inner(), start);
             return digest.0;

@@ -34,7 +34,7 @@ pub fn drawn() -> u64 {
             return digest.0;
         }
         let action = against(acrobot.state().dtheta1);
-        done = acrobot.step(action).done();
+        done = acrobot.step(action).is_done();
         let torque = acrobot.params().torque(action);
         let figure = Figure::new(acrobot.inner()).with_torque(torque);
         let Ok(()) = figure.redraw(&last, &mut display, &Theme::MONOCHROME);

@@ -85,7 +85,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
 
     /// A rejected call leaves the batch as it was.
     fn call(&mut self, call: Call<A::Scalar>) {
-        let Twins { batch, alone, ended } = &mut self.twins;
+        let Twins { batch, alone, done } = &mut self.twins;
         let len = alone.len();
         match call {
             Call::Settings(autoreset, limit, level, bounds) => {
@@ -126,10 +126,10 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
             Call::Store(index) => {
                 let member = batch.member(index);
                 assert_eq!(member.is_some(), index < len);
-                self.stored = member.map(|member| (member, alone[index].clone(), ended[index]));
+                self.stored = member.map(|member| (member, alone[index].clone(), done[index]));
             }
             Call::Load(index) => {
-                let Some((member, stored, had_ended)) = self.stored.clone() else {
+                let Some((member, stored, was_done)) = self.stored.clone() else {
                     return;
                 };
                 let fits = self.own_params || member.params == *alone[0].params();
@@ -141,7 +141,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                     // Shared parameters can differ from the stored ones in the sign of zero.
                     let params = batch.params_of(index).unwrap();
                     alone[index].set_params(params).unwrap();
-                    ended[index] = had_ended;
+                    done[index] = was_done;
                     self.settle();
                 }
             }
@@ -165,7 +165,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
     /// With `SameStep` no acrobot waits for a reset.
     fn settle(&mut self) {
         if self.twins.batch.autoreset() == Autoreset::SameStep {
-            self.twins.reset_ended();
+            self.twins.reset_done();
         }
     }
 }

@@ -45,7 +45,7 @@ fn SysTick() {
             true => Action::Negative,
             false => Action::Positive,
         };
-        if acrobot.step(action).done() {
+        if acrobot.step(action).is_done() {
             println!("the episode ended after {} steps", acrobot.elapsed_steps());
             process::exit(0)
         }

@@ -40,7 +40,7 @@ fn main() -> ! {
         let step = acrobot.step(action);
         CLOCK.store(acrobot.elapsed_steps(), Ordering::Relaxed);
         defmt::debug!("{} {}", action, step);
-        if step.done() {
+        if step.is_done() {
             defmt::info!("end {}", acrobot.inner());
             process::exit(0)
         }

@@ -41,7 +41,7 @@ fn main() -> ! {
         loop {
             let step = env.step(POLICY.action(&env.observation()));
             gained += step.reward;
-            if step.done() {
+            if step.is_done() {
                 break;
             }
         }
@@ -72,7 +72,7 @@ fn compare() -> (usize, usize) {
                 Ok(expected) => equal += usize::from(POLICY.action(&env.observation()) == expected),
                 Err(_) => ties += 1,
             }
-            if env.step(Action::sample(&mut random)).done() {
+            if env.step(Action::sample(&mut random)).is_done() {
                 env.reset();
             }
         }

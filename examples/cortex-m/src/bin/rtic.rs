@@ -67,7 +67,7 @@ mod app {
         let action = cx.shared.action.lock(|action| *action);
         let step = cx.local.acrobot.step(action);
         cx.shared.observation.lock(|seen| *seen = step.observation);
-        if step.done() {
+        if step.is_done() {
             println!("the episode ended after {} steps", cx.local.acrobot.elapsed_steps());
             process::exit(0)
         }

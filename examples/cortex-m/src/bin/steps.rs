@@ -36,7 +36,7 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     let mut actions = actions.iter().copied().cycle();
     let count = counter.count(4000, || {
         let action = actions.next().unwrap_or(Action::Zero);
-        if black_box(&step(&mut acrobot, action)).done() {
+        if black_box(&step(&mut acrobot, action)).is_done() {
             black_box(acrobot.reset());
         }
     });
