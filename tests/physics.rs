@@ -131,7 +131,7 @@ fn an_arithmetic_without_friction_rejects_it() {
     let mut pendulum = Pendulum::<Portable>::hanging();
     let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(0));
     let mut batch = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
-    let shared = batch.set_params(with);
+    let shared = batch.set_all_params(with);
     batch.own_params().unwrap();
     let mut member = batch.member(0).unwrap();
     member.params = with;
@@ -142,8 +142,8 @@ fn an_arithmetic_without_friction_rejects_it() {
         with.pendulum::<Portable>(State::HANGING).map(drop),
         pendulum.set_params(with),
         acrobot.set_params(with),
-        batch.set_params(with),
-        batch.set_params_of(1, with),
+        batch.set_all_params(with),
+        batch.set_params(1, with),
         batch.set_member(1, member),
         batch.set_draws(draws),
     ] {

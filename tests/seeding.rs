@@ -117,7 +117,7 @@ fn there_is_always_a_next_child() {
     let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 1]);
     let batch = Batch::<Fast, _>::new(seed, memory).unwrap();
     let alone = Acrobot::<Fast>::with_rng(next.into());
-    assert_eq!(batch.state_of(0), Some(alone.state()));
+    assert_eq!(batch.state(0), Ok(alone.state()));
 }
 
 /// A text of up to 4300 digits is a seed. A longer one is rejected at once.

@@ -97,11 +97,11 @@ fn orientations_within_1<A: Arithmetic>() {
     let mut acrobot = Acrobot::<A, Swingup>::new(0);
     let mut batch = VecBatch::<A, Swingup>::new(SeedSequence::new(1), 20_000).unwrap();
     for index in 0..batch.len() {
-        let drawn = batch.state_of(index).unwrap();
+        let drawn = batch.state(index).unwrap();
         let aside = f64::from(index as u32 % 8) * (PI / 2.0) - drawn.theta1.to_f64();
         let theta2 = Real::from_f64(aside);
         let state = State { theta2, ..drawn };
-        batch.set_state_of(index, state).unwrap();
+        batch.set_state(index, state).unwrap();
         acrobot.set_state(state).unwrap();
         within(&acrobot.observation());
         within(&acrobot.step(Action::Zero).observation);

@@ -40,14 +40,10 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
 
 // Lanes are accessed by iterators or `get`, so no compiler has to prove that an index cannot panic.
 impl<A: Arithmetic, const N: usize> Block<A, N> {
-    pub(super) fn state(&self, lane: usize) -> Option<State<A::Scalar>> {
-        let [theta1, theta2, dtheta1, dtheta2] = &self.y;
-        Some(State {
-            theta1: *theta1.0.get(lane)?,
-            theta2: *theta2.0.get(lane)?,
-            dtheta1: *dtheta1.0.get(lane)?,
-            dtheta2: *dtheta2.0.get(lane)?,
-        })
+    /// The state of a lane below `N`.
+    pub(super) fn state(&self, lane: usize) -> State<A::Scalar> {
+        let number = |numbers: &Lanes<_, N>| numbers.0.get(lane).copied().unwrap_or_default();
+        self.y.each_ref().map(number).into()
     }
 
     /// Sets the state of a lane. Its episode continues.
@@ -62,9 +58,10 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
-    /// The number of steps of a lane's episode, and whether that has ended.
-    pub(super) fn progress(&self, lane: usize) -> Option<(u32, bool)> {
-        Some((*self.elapsed_steps.get(lane)?, *self.done.get(lane)?))
+    /// The number of steps of a lane's episode, and whether that has ended, for a lane below `N`.
+    pub(super) fn progress(&self, lane: usize) -> (u32, bool) {
+        let (elapsed_steps, done) = (self.elapsed_steps.get(lane), self.done.get(lane));
+        (elapsed_steps.copied().unwrap_or_default(), done.copied().unwrap_or_default())
     }
 
     pub(super) fn set_progress(&mut self, lane: usize, elapsed_steps: u32, is_done: bool) {

@@ -47,7 +47,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Serialize for Bat
             own_params: self.has_own_params(),
             draws: *self.draws().params(),
         })?;
-        for member in (0..self.len()).filter_map(|index| self.member(index)) {
+        for member in (0..self.len()).filter_map(|index| self.member(index).ok()) {
             records.serialize_element(&member)?;
         }
         records.end()
@@ -83,7 +83,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
             return check_length("members", index + 1, self.len());
         }
         if index == 0 {
-            self.set_params(member.params)?;
+            self.set_all_params(member.params)?;
         }
         self.set_member(index, member)
     }

@@ -71,7 +71,7 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
         Ok(Self { batch: Batch::new(seed, storage)?, results: StepResults::new(len)? })
     }
 
-    /// Allocates parameters for each acrobot, which [`set_params_of`](Batch::set_params_of) and
+    /// Allocates parameters for each acrobot, which [`set_params`](Batch::set_params) and
     /// [`set_draws`](Batch::set_draws) need. They begin as those that all share.
     ///
     /// # Errors

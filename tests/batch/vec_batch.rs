@@ -48,8 +48,8 @@ fn parameters_are_drawn_after_the_initial_state_in_the_order_of_the_fields() {
         let (seed, rest) = row.split_once(',').unwrap();
         let (child, numbers) = rest.split_once(',').unwrap();
         let (params, state) = if let Ok(child) = child.parse() {
-            assert_eq!(plain.state_of(child), batch.state_of(child));
-            (batch.params_of(child).unwrap(), batch.state_of(child).unwrap())
+            assert_eq!(plain.state(child), batch.state(child));
+            (batch.params(child).unwrap(), batch.state(child).unwrap())
         } else {
             let mut acrobot = Acrobot::<Fast>::new(seed.parse().unwrap());
             acrobot.draw_params(&draws).unwrap();

@@ -278,26 +278,23 @@ pub unsafe extern "C" fn acrobot_batch_set_max_steps(
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_state_of(
+pub unsafe extern "C" fn acrobot_batch_state(
     batch: *const acrobot_batch_t,
     index: usize,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    get(batch, state, |placed| {
-        let state = placed.batch.state_of(index);
-        Ok(state.ok_or(ACROBOT_ERROR_NO_SUCH_INDEX)?.into())
-    })
+    get(batch, state, |placed| Ok(placed.batch.state(index)?.into()))
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_set_state_of(
+pub unsafe extern "C" fn acrobot_batch_set_state(
     batch: *mut acrobot_batch_t,
     index: usize,
     state: *const acrobot_state_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(batch, ptr::null_mut(), error, |placed| {
-        Ok(placed.batch.set_state_of(index, read(state)?.into())?)
+        Ok(placed.batch.set_state(index, read(state)?.into())?)
     })
 }
 
@@ -306,7 +303,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     batch: *const acrobot_batch_t,
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
-    get(batch, params, |placed| Ok(placed.batch.params_of(0).unwrap_or(Params::DEFAULT).into()))
+    get(batch, params, |placed| Ok(placed.batch.params(0).unwrap_or(Params::DEFAULT).into()))
 }
 
 #[unsafe(no_mangle)]
@@ -316,6 +313,6 @@ pub unsafe extern "C" fn acrobot_batch_set_params(
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(batch, ptr::null_mut(), error, |placed| {
-        Ok(placed.batch.set_params(read(params)?.try_into()?)?)
+        Ok(placed.batch.set_all_params(read(params)?.try_into()?)?)
     })
 }

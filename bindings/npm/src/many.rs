@@ -238,7 +238,7 @@ impl Many {
     fn note_torques(&mut self) {
         with_task!(&self.batch, batch => {
             for (index, torques) in self.torques_of.iter_mut().enumerate() {
-                *torques = batch.params_of(index).map_or(*torques, |params| params.torques);
+                *torques = batch.params(index).map_or(*torques, |params| params.torques);
             }
         });
     }
@@ -258,16 +258,16 @@ impl Many {
             // All are tried before one changes.
             for is_trial in [true, false] {
                 for each in indices.clone() {
-                    let Some(before) = batch.params_of(each) else {
+                    let Ok(before) = batch.params(each) else {
                         break;
                     };
                     let params = memory::changed(before, mask);
                     if index.is_none() && !batch.has_own_params() {
-                        return batch.set_params(params);
+                        return batch.set_all_params(params);
                     }
-                    batch.set_params_of(each, params)?;
+                    batch.set_params(each, params)?;
                     if is_trial {
-                        batch.set_params_of(each, before)?;
+                        batch.set_params(each, before)?;
                     }
                 }
             }
@@ -331,10 +331,10 @@ pub extern "C" fn step_action(many: &mut Many, action: usize) -> u32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn read_one(many: &Many, index: usize) {
     let read = with_task!(&many.batch, batch => {
-        let params = batch.params_of(index);
-        params.zip(batch.state_of(index)).zip(batch.elapsed_steps_of(index))
+        (batch.params(index), batch.state(index), batch.elapsed_steps(index))
     });
-    if let (Some(((params, state), elapsed_steps)), Some(torque)) = (read, many.torques.get(index))
+    if let ((Ok(params), Ok(state), Ok(elapsed_steps)), Some(torque)) =
+        (read, many.torques.get(index))
         && let Ok(pendulum) = Pendulum::<Damped<Fast>>::new(params, state)
     {
         let [a, b, c, d] = state.into();
@@ -347,12 +347,12 @@ pub extern "C" fn read_one(many: &Many, index: usize) {
 #[unsafe(no_mangle)]
 pub extern "C" fn set_state(many: &mut Many, index: usize) -> u32 {
     let state = words::get_state();
-    memory::reason(with_task!(&mut many.batch, batch => batch.set_state_of(index, state)))
+    memory::reason(with_task!(&mut many.batch, batch => batch.set_state(index, state)))
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn params(many: &Many, index: usize) {
-    if let Some(params) = with_task!(&many.batch, batch => batch.params_of(index)) {
+    if let Ok(params) = with_task!(&many.batch, batch => batch.params(index)) {
         words::set_params(&params);
     }
 }

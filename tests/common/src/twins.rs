@@ -34,7 +34,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
     }
 
     pub fn set_params(&mut self, params: Params<A::Scalar>) {
-        self.batch.set_params(params).unwrap();
+        self.batch.set_all_params(params).unwrap();
         for alone in &mut self.alone {
             alone.set_params(params).unwrap();
         }
@@ -145,9 +145,9 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
             assert_eq!(member, expected, "acrobot {i}");
             assert_eq!(bits(member.state), bits(expected.state), "acrobot {i}");
             assert!(equal(&rows[i], &inner.observation()), "acrobot {i}");
-            assert_eq!(batch.elapsed_steps_of(i), Some(member.elapsed_steps));
-            assert_eq!(batch.is_done(i), Some(member.is_done));
-            assert_eq!(batch.params_of(i), Some(member.params));
+            assert_eq!(batch.elapsed_steps(i), Ok(member.elapsed_steps));
+            assert_eq!(batch.is_done(i), Ok(member.is_done));
+            assert_eq!(batch.params(i), Ok(member.params));
         }
     }
 
@@ -172,7 +172,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
             }
             shared.set_params(Params {
                 torque_noise: Real::from_f64(0.5),
-                ..shared.batch.params_of(0).unwrap()
+                ..shared.batch.params(0).unwrap()
             });
             for twins in [&mut shared, &mut drawn] {
                 twins.batch.set_reset_bounds(ResetBounds::new(-100.0, 100.0).unwrap());

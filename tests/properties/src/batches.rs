@@ -101,7 +101,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                 if !valid {
                     params.mass1 = Real::ZERO;
                 }
-                let set = batch.set_params_of(index, params);
+                let set = batch.set_params(index, params);
                 assert_eq!(set.is_ok(), valid && self.own_params && index < len);
                 if set.is_ok() {
                     alone[index].set_params(params).unwrap();
@@ -118,15 +118,15 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
             }
             Call::ResetTo(states) => self.twins.reset_to(&states[..len]),
             Call::State(index, state) => {
-                assert_eq!(batch.set_state_of(index, state).is_ok(), index < len);
+                assert_eq!(batch.set_state(index, state).is_ok(), index < len);
                 if let Some(alone) = alone.get_mut(index) {
                     alone.set_state(state).unwrap();
                 }
             }
             Call::Store(index) => {
                 let member = batch.member(index);
-                assert_eq!(member.is_some(), index < len);
-                self.stored = member.map(|member| (member, alone[index].clone(), done[index]));
+                assert_eq!(member.is_ok(), index < len);
+                self.stored = member.ok().map(|member| (member, alone[index].clone(), done[index]));
             }
             Call::Load(index) => {
                 let Some((member, stored, was_done)) = self.stored.clone() else {
@@ -139,7 +139,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                     alone[index] = stored;
                     alone[index].set_max_steps(batch.max_steps());
                     // Shared parameters can differ from the stored ones in the sign of zero.
-                    let params = batch.params_of(index).unwrap();
+                    let params = batch.params(index).unwrap();
                     alone[index].set_params(params).unwrap();
                     done[index] = was_done;
                     self.settle();

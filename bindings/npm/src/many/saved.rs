@@ -47,7 +47,7 @@ pub extern "C" fn save(many: &Many) -> usize {
                     (params, (state, elapsed_steps, is_done, rng))
                 })
             });
-            if let Some((params, fields)) = member {
+            if let Ok((params, fields)) = member {
                 snapshot::write_params(params, writer)?;
                 if many.is_alone {
                     let (state, elapsed_steps, _, rng) = fields;
@@ -109,7 +109,7 @@ impl Many {
         with_task!(&mut self.batch, batch => {
             // The first brings the parameters, if all acrobots share them.
             if index == 0 {
-                batch.set_params(params).ok()?;
+                batch.set_all_params(params).ok()?;
             }
             let member = Member { params, state, elapsed_steps, is_done, rng };
             batch.set_member(index, member).ok()

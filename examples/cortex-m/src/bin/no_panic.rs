@@ -190,8 +190,8 @@ where
     for _ in 0..black_box(10) {
         batch.set_autoreset(black_box(Autoreset::Disabled));
         let _ = black_box((
-            batch.set_params(params()),
-            batch.set_params_of(black_box(3), params()),
+            batch.set_all_params(params()),
+            batch.set_params(black_box(3), params()),
             draws().and_then(|draws| batch.set_draws(draws)),
         ));
         let actions = black_box([1_u8; LEN]);
@@ -209,11 +209,11 @@ where
             batch.observe(&mut rows),
             batch.reset_masked(&black_box([true; LEN]), ResetOptions::default()),
             batch.reset_to(&black_box([State::default(); LEN])),
-            batch.set_state_of(black_box(3), state()),
+            batch.set_state(black_box(3), state()),
         ));
-        black_box((&rows, batch.state_of(black_box(3))));
-        black_box((batch.params_of(black_box(3)), batch.elapsed_steps_of(black_box(3))));
-        if let Some(member) = batch.member(black_box(3)) {
+        let _ = black_box((&rows, batch.state(black_box(3)), batch.is_done(black_box(3))));
+        let _ = black_box((batch.params(black_box(3)), batch.elapsed_steps(black_box(3))));
+        if let Ok(member) = batch.member(black_box(3)) {
             let _ = black_box(batch.set_member(black_box(4), member));
         }
         batch.reset();
