@@ -28,7 +28,7 @@ pub use inputs::Input;
 pub use lane_params::LaneParams;
 pub use member::Member;
 pub use settings::Autoreset;
-pub use storage::Storage;
+pub use storage::{BatchMemory, OwnParams, Storage};
 #[cfg(feature = "alloc")]
 pub use vec_batch::{StepResults, VecBatch};
 
@@ -50,7 +50,7 @@ use work::Work;
 /// child, under a [`TimeLimit`](crate::TimeLimit), whatever `N` and the [SIMD
 /// instructions](SimdLevel).
 ///
-/// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32, or the program does not compile.
+/// `S` is its [memory](BatchMemory). `N` must be from 1 to 32, or the program does not compile.
 ///
 /// # Snapshots
 ///

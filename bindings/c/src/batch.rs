@@ -3,7 +3,7 @@
 use core::ffi::{c_int, c_void};
 use core::{ptr, slice};
 
-use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::task::Gymnasium;
 use acrobot::{Fast, Params, ResetOptions};
@@ -45,10 +45,12 @@ pub struct acrobot_batch_results_t {
 
 type LanesBlock = Block<Fast, LANES>;
 
+type Memory = BatchMemory<&'static mut [LanesBlock], &'static mut [Pcg64]>;
+
 pub struct Placed {
     /// Where `acrobot_batch_init` put it.
     address: usize,
-    batch: Batch<Fast, (&'static mut [LanesBlock], &'static mut [Pcg64]), Gymnasium, LANES>,
+    batch: Batch<Fast, Memory, Gymnasium, LANES>,
 }
 
 impl Holder for acrobot_batch_t {
@@ -126,7 +128,8 @@ pub unsafe extern "C" fn acrobot_batch_init(
         }
         let blocks = slice::from_raw_parts_mut(blocks, block_count);
         let generators = slice::from_raw_parts_mut(generators, count);
-        let value = Placed { address: to.addr(), batch: Batch::new(seed, (blocks, generators))? };
+        let batch_memory = BatchMemory { blocks, generators, own: () };
+        let value = Placed { address: to.addr(), batch: Batch::new(seed, batch_memory)? };
         Holder::init(to, value)?;
         batch.write(to);
         Ok(())

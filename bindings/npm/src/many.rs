@@ -3,10 +3,10 @@
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Damped};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::Pendulum;
-use acrobot::task::{Balance, Draw, Draws, Gymnasium, Swingup};
+use acrobot::task::{Balance, Draw, Gymnasium, Swingup};
 use acrobot::{Action, Error, Fast, ResetOptions};
 
 use crate::words;
@@ -16,8 +16,8 @@ use memory::{set_numbers, zeros};
 const LANES: usize = 4;
 
 /// Vectors for parameters of each acrobot, too, or for none. Compiling both takes 13 KB.
-type Memory<A> =
-    (Vec<Block<A, LANES>>, Vec<Pcg64>, Vec<LaneParams<A, LANES>>, Draws<<A as Arithmetic>::Scalar>);
+type Own<A> = OwnParams<Vec<LaneParams<A, LANES>>, <A as Arithmetic>::Scalar>;
+type Memory<A> = BatchMemory<Vec<Block<A, LANES>>, Vec<Pcg64>, Own<A>>;
 
 type Acrobots<A, T> = Batch<A, Memory<A>, T, LANES>;
 
@@ -77,7 +77,8 @@ fn memory<A: Arithmetic>(count: usize, own_params: bool) -> Option<Memory<A>> {
     let len = count.div_ceil(LANES);
     let own = if own_params { len } else { 0 };
     // SAFETY: all are numbers and flags, which `Batch::new` writes.
-    unsafe { Some((zeros(len)?, zeros(count)?, zeros(own)?, Draws::NONE)) }
+    let (blocks, generators, own) = unsafe { (zeros(len)?, zeros(count)?, zeros(own)?) };
+    Some(BatchMemory { blocks, generators, own: OwnParams::new(own) })
 }
 
 impl Many {

@@ -7,7 +7,9 @@ use std::num::NonZeroU32;
 use std::path::Path;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
+use acrobot::batch::{
+    Autoreset, Batch, BatchMemory, Block, LaneParams, Member, OwnParams, VecBatch,
+};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Dynamics;
 use acrobot::task::{Draw, Draws, Gymnasium};
@@ -190,8 +192,9 @@ impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, Gymnasium, N> {
 
     fn check(mut self) -> bool {
         let len = self.len();
-        let own = vec![LaneParams::default(); len];
-        let memory = (vec![Block::EMPTY; len], vec![Pcg64::UNSEEDED; len], own, Draws::NONE);
+        let (blocks, generators) = (vec![Block::EMPTY; len], vec![Pcg64::UNSEEDED; len]);
+        let own = OwnParams::new(vec![LaneParams::default(); len]);
+        let memory = BatchMemory { blocks, generators, own };
         let bytes = binary(&self);
         let from = &mut postcard::Deserializer::from_bytes(&bytes);
         let loaded = Batch::<A, _, Gymnasium, 1>::from_snapshot(memory, from);

@@ -1,7 +1,9 @@
 //! Fixed episodes and batches, and a digest of every bit of each.
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
+use acrobot::batch::{
+    Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams, StepBuffers, Storage,
+};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Joints;
 use acrobot::task::{Draw, Draws, Gymnasium, Task};
@@ -123,14 +125,16 @@ pub fn batches<const N: usize, const BLOCKS_OF_20: usize, const BLOCKS_OF_8: usi
 #[inline(never)]
 pub fn shared_params<const N: usize, const BLOCKS: usize>() -> u64 {
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
-    batch::<20, N, _>((&mut blocks[..], &mut generators[..]), |_| {})
+    let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
+    batch::<20, N, _>(BatchMemory { blocks, generators, own: () }, |_| {})
 }
 
 /// As [`shared_params`] with subnormal numbers.
 #[inline(never)]
 fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
-    batch::<20, N, _>((&mut blocks[..], &mut generators[..]), |batch| {
+    let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
+    batch::<20, N, _>(BatchMemory { blocks, generators, own: () }, |batch| {
         let mut params = Params::DEFAULT;
         subnormal_torques::<Fast>(&mut params);
         // Neither fails: a failure changes the digest.
@@ -151,7 +155,8 @@ fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
     });
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 8]);
     let mut own = [LaneParams::default(); BLOCKS];
-    let memory = (&mut blocks[..], &mut generators[..], &mut own[..], Draws::NONE);
+    let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
+    let memory = BatchMemory { blocks, generators, own: OwnParams::new(&mut own[..]) };
     batch::<8, N, _>(memory, |batch| {
         // It does not fail: a failure changes the digest.
         let _ = draws.and_then(|draws| batch.set_draws(draws));

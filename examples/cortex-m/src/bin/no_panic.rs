@@ -12,7 +12,9 @@ use core::num::NonZeroU32;
 use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
+use acrobot::batch::{
+    Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams, StepBuffers, Storage,
+};
 use acrobot::control::{
     self, Cost, Estimator, Evidence, Knot, Noise, Planner, Sample, difference, inverse_dynamics,
     linearize, linearize_step, lqr, regulator, velocities,
@@ -47,8 +49,9 @@ fn main() -> ! {
         all_of::<Portable, Gymnasium>();
         all_of::<Reference, Gymnasium>();
         all_of::<Damped<Fast>, Swingup>();
-        let (own, draws) = ([LaneParams::default(); 2], Draws::NONE);
-        batch::<Fast, Gymnasium, 20, 16>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20], own, draws));
+        let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
+        let own = OwnParams::new([LaneParams::default(); 2]);
+        batch::<Fast, Gymnasium, 20, 16>(BatchMemory { blocks, generators, own });
         numbers();
         learners();
         planner::<Fast>();
@@ -65,7 +68,8 @@ fn all_of<A: Arithmetic, T: Task<Observation = [f32; 6]>>() {
     control::<A>();
     environment::<A, T>();
     // Blocks of 16 lanes, the default, compile far longer, so only `main` has one.
-    batch::<A, T, 6, 4>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6]));
+    let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6]);
+    batch::<A, T, 6, 4>(BatchMemory { blocks, generators, own: () });
 }
 
 /// A number that the compiler cannot know.
