@@ -64,7 +64,7 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
     const STEPS: usize = 200_000;
     let mut rng = Pcg64::new(0);
     let actions: Vec<Action> = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
-    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(0));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A>::new(0));
     let ours = || {
         for &action in &actions {
             if black_box(acrobot.step(action)).is_done() {

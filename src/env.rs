@@ -39,7 +39,7 @@ use crate::time_limit::TimeLimit;
 ///     }
 /// }
 ///
-/// let mut env = Scaled(TimeLimit::of(Acrobot::<Portable>::new(42)));
+/// let mut env = Scaled(TimeLimit::with_task_limit(Acrobot::<Portable>::new(42)));
 /// assert_eq!(env.step(Action::Zero).reward, -0.002);
 /// ```
 pub trait Env: Send {

@@ -129,7 +129,7 @@ fn an_arithmetic_without_friction_rejects_it() {
     let friction = Joints { joint1: Draw::Fixed, joint2: Draw::Uniform { low: 0.0, high: 0.5 } };
     let draws = Draws::new(Params { friction, ..Draws::FIXED }).unwrap();
     let mut pendulum = Pendulum::<Portable>::hanging();
-    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(0));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Portable>::new(0));
     let mut batch = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
     let shared = batch.set_all_params(with);
     batch.own_params().unwrap();
@@ -141,7 +141,7 @@ fn an_arithmetic_without_friction_rejects_it() {
         Pendulum::<Portable>::new(with, State::HANGING).map(drop),
         with.pendulum::<Portable>(State::HANGING).map(drop),
         pendulum.set_params(with),
-        acrobot.set_params(with),
+        acrobot.inner_mut().set_params(with),
         batch.set_all_params(with),
         batch.set_params(1, with),
         batch.set_member(1, member),

@@ -13,7 +13,7 @@ type Limited = TimeLimit<Acrobot<Portable>>;
 
 /// An acrobot in the middle of an episode with noise. Its generator keeps half a draw.
 fn busy() -> Limited {
-    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(u64::MAX));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Portable>::new(u64::MAX));
     let inner = acrobot.inner_mut();
     inner.set_params(Params { torque_noise: 0.1, mass2: 1.5, ..Params::DEFAULT }).unwrap();
     Action::sample(inner.rng_mut());
@@ -121,7 +121,8 @@ fn snapshots_of_version_5_stay_readable() {
 #[test]
 fn no_snapshot_is_larger_than_its_constant() {
     fn check<A: Arithmetic>() {
-        let mut largest = serde_json::to_value(TimeLimit::of(Acrobot::<A>::new(0))).unwrap();
+        let mut largest =
+            serde_json::to_value(TimeLimit::with_task_limit(Acrobot::<A>::new(0))).unwrap();
         largest["inner"]["rng"] = serde_json::json!({
             "seed": ([u32::MAX; 8]), "position": u64::MAX, "has_half": true, "half": u32::MAX
         });

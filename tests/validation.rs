@@ -90,11 +90,11 @@ fn a_link_needs_inertia_about_its_joint() {
 #[test]
 fn states_and_torques_that_are_not_finite_are_rejected() {
     let state = State { dtheta2: f64::NAN, ..State::HANGING };
-    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(1));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Portable>::new(1));
     let mut pendulum = Pendulum::<Portable>::new(Params::DEFAULT, acrobot.state()).unwrap();
     let before = (acrobot.clone(), pendulum.clone());
     for result in [
-        acrobot.set_state(state),
+        acrobot.inner_mut().set_state(state),
         pendulum.set_state(state),
         Pendulum::<Portable>::new(Params::DEFAULT, state).map(drop),
         Params::<f64>::DEFAULT.pendulum::<Portable>(state).map(drop),

@@ -123,7 +123,7 @@ impl<A: Arithmetic> Snapshot for Acrobot<A> {
 
 impl<A: Arithmetic> Snapshot for TimeLimit<Acrobot<A>> {
     fn sample() -> Self {
-        let mut limited = TimeLimit::of(Acrobot::sample());
+        let mut limited = TimeLimit::with_task_limit(Acrobot::sample());
         limited.step(Action::Zero);
         limited
     }

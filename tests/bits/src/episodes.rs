@@ -29,9 +29,9 @@ pub fn add_seen<A: Arithmetic, T: Task>(
 /// episodes have random actions, odd ones torque against θ̇1.
 fn episode<A: Arithmetic>(number: u64) -> u64 {
     let mut digest = Digest::default();
-    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(number));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A>::new(number));
     let mut actions = Pcg64::new(number);
-    add_seen(&mut digest, acrobot.inner(), acrobot.inner().observation());
+    add_seen(&mut digest, acrobot.inner(), acrobot.observation());
     loop {
         let action = if number.is_multiple_of(2) {
             Action::sample(&mut actions)

@@ -19,7 +19,7 @@ pub type Display =
 pub fn drawn() -> u64 {
     let mut digest = Digest::default();
     let mut display = Display::new();
-    let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(42));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Fast>::new(42));
     let mut last = Figure::new(acrobot.inner());
     let Ok(()) = last.draw(&mut display, &Theme::MONOCHROME);
     let mut done = false;

@@ -36,7 +36,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
     pub fn set_params(&mut self, params: Params<A::Scalar>) {
         self.batch.set_all_params(params).unwrap();
         for alone in &mut self.alone {
-            alone.set_params(params).unwrap();
+            alone.inner_mut().set_params(params).unwrap();
         }
         self.assert_equal();
     }
@@ -54,7 +54,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
                 reset_one(&self.batch, alone, ResetOptions { seed, ..options });
                 self.done[i] = false;
             }
-            assert!(equal(&rows[i], &alone.inner().observation()));
+            assert!(equal(&rows[i], &alone.observation()));
         }
         self.assert_equal();
     }
@@ -74,7 +74,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
         self.batch.reset_to(states).unwrap();
         for (alone, state) in self.alone.iter_mut().zip(states) {
             *alone = TimeLimit::new(alone.inner().clone(), alone.max_steps());
-            alone.set_state(*state).unwrap();
+            alone.inner_mut().set_state(*state).unwrap();
         }
         self.done.fill(false);
         self.assert_equal();

@@ -104,7 +104,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                 let set = batch.set_params(index, params);
                 assert_eq!(set.is_ok(), valid && self.own_params && index < len);
                 if set.is_ok() {
-                    alone[index].set_params(params).unwrap();
+                    alone[index].inner_mut().set_params(params).unwrap();
                 }
             }
             Call::Draws(some) => {
@@ -120,7 +120,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
             Call::State(index, state) => {
                 assert_eq!(batch.set_state(index, state).is_ok(), index < len);
                 if let Some(alone) = alone.get_mut(index) {
-                    alone.set_state(state).unwrap();
+                    alone.inner_mut().set_state(state).unwrap();
                 }
             }
             Call::Store(index) => {
@@ -140,7 +140,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                     alone[index].set_max_steps(batch.max_steps());
                     // Shared parameters can differ from the stored ones in the sign of zero.
                     let params = batch.params(index).unwrap();
-                    alone[index].set_params(params).unwrap();
+                    alone[index].inner_mut().set_params(params).unwrap();
                     done[index] = was_done;
                     self.settle();
                 }

@@ -25,7 +25,7 @@ fn main() -> ! {
     defmt::info!("start {}", acrobot.state());
 
     let rejected = Params { dt: 0.0, ..Params::DEFAULT };
-    if let Err(error) = acrobot.set_params(rejected) {
+    if let Err(error) = acrobot.inner_mut().set_params(rejected) {
         defmt::warn!("{}", error);
     }
     if let Err(error) = ResetBounds::new(0.1, -0.1) {

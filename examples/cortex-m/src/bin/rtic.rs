@@ -61,7 +61,8 @@ mod app {
     /// lock.
     #[task(binds = SysTick, priority = 2, shared = [observation, action], local = [
         // The compiler makes it, seed included.
-        acrobot: TimeLimit<Acrobot<Fast>> = TimeLimit::of(Acrobot::hanging(Pcg64::new(42))),
+        acrobot: TimeLimit<Acrobot<Fast>> =
+            TimeLimit::with_task_limit(Acrobot::hanging(Pcg64::new(42))),
     ])]
     fn machine(mut cx: machine::Context) {
         let action = cx.shared.action.lock(|action| *action);
