@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::Pcg64;
 use crate::physics::{Params, Pendulum, State, check_torque, default_model};
-use crate::task::{Draws, Gymnasium, Observation, ResetBounds, ResetOptions, Seen, Task, episode};
+use crate::task::{Draws, Gymnasium, Observation, Pose, ResetBounds, ResetOptions, Task, episode};
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
@@ -168,8 +168,8 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
 
     #[inline]
     fn observe(&self, sin_cos: [SinCos<A::Scalar>; 2]) -> T::Observation {
-        let seen = Seen { state: self.state(), sin_cos };
-        T::Observation::rounded(self.task.observe::<A, A::Scalar>(&seen))
+        let pose = Pose { state: self.state(), sin_cos };
+        T::Observation::rounded(self.task.observe::<A, A::Scalar>(&pose))
     }
 
     /// The task.

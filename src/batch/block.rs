@@ -8,7 +8,7 @@ use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real, SinCos};
 use crate::numpy::Pcg64;
 use crate::physics::{State, sin_cos};
-use crate::task::{Observation, ResetBounds, Seen, Task, episode};
+use crate::task::{Observation, Pose, ResetBounds, Task, episode};
 
 /// The states of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) has several.
 ///
@@ -123,11 +123,11 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         sines.zip(states).map(|(sines, states)| {
             let (((sin1, cos1), (sin2, cos2)), ((theta1, theta2), (dtheta1, dtheta2))) =
                 (sines, states);
-            let seen = Seen {
+            let pose = Pose {
                 state: [*theta1, *theta2, *dtheta1, *dtheta2].into(),
                 sin_cos: [(*sin1, *cos1), (*sin2, *cos2)],
             };
-            T::Observation::rounded(task.observe::<A, A::Scalar>(&seen))
+            T::Observation::rounded(task.observe::<A, A::Scalar>(&pose))
         })
     }
 
