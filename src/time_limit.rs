@@ -9,6 +9,7 @@ use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
+use crate::numpy::SeedSequence;
 use crate::task::{ResetOptions, Task, episode};
 
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` from the
@@ -74,7 +75,7 @@ impl<A: Arithmetic, T: Task> TimeLimit<Acrobot<A, T>> {
     pub const MAX_SNAPSHOT_SIZE: usize = Acrobot::<A, T>::MAX_SNAPSHOT_SIZE + 2 * 5;
 
     /// Calls [`Acrobot::reset_with_seed`] and sets the count of steps to 0.
-    pub fn reset_with_seed(&mut self, seed: u64) -> T::Observation {
+    pub fn reset_with_seed(&mut self, seed: impl Into<SeedSequence>) -> T::Observation {
         self.elapsed_steps = 0;
         self.inner.reset_with_seed(seed)
     }

@@ -3,7 +3,7 @@
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
 use acrobot::batch::VecBatch;
 use acrobot::control::inverse_dynamics;
-use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Dynamics, Joints, Pendulum};
 use acrobot::task::{Draw, Draws};
 use acrobot::{Acrobot, Params, Portable, State, TimeLimit};
@@ -130,7 +130,7 @@ fn an_arithmetic_without_friction_rejects_it() {
     let draws = Draws::new(Params { friction, ..Draws::FIXED }).unwrap();
     let mut pendulum = Pendulum::<Portable>::hanging();
     let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Portable>::new(0));
-    let mut batch = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
+    let mut batch = VecBatch::<Portable>::new(0, 2).unwrap();
     let shared = batch.set_all_params(with);
     batch.own_params().unwrap();
     let mut member = batch.member(0).unwrap();

@@ -117,7 +117,7 @@ fn there_is_always_a_next_child() {
     let (blocks, generators) = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 1]);
     let memory = BatchMemory { blocks, generators, own: () };
     let batch = Batch::<Fast, _>::new(seed, memory).unwrap();
-    let alone = Acrobot::<Fast>::with_rng(next.into());
+    let alone = Acrobot::<Fast>::new(next);
     assert_eq!(batch.state(0), Ok(alone.state()));
 }
 

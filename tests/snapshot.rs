@@ -3,7 +3,6 @@
 
 use acrobot::arithmetic::{Arithmetic, Damped, Reference};
 use acrobot::batch::{Member, VecBatch};
-use acrobot::numpy::SeedSequence;
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use serde::Serialize;
@@ -62,7 +61,7 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
 
 /// A batch whose resets draw parameters, after a step.
 fn batch() -> VecBatch<Fast> {
-    let mut batch = VecBatch::new(SeedSequence::new(42), 2).unwrap();
+    let mut batch = VecBatch::new(42, 2).unwrap();
     batch.own_params().unwrap();
     batch.set_draws(common::draws::<Fast>()).unwrap();
     batch.set_reset_bounds(ResetBounds::new(-0.5, 0.25).unwrap());

@@ -7,7 +7,7 @@ use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::batch::VecBatch;
 use acrobot::control::{difference, regulator};
 use acrobot::env::Env;
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::numpy::Pcg64;
 use acrobot::physics::{Pendulum, saturate};
 use acrobot::rand_core::Rng;
 use acrobot::task::{Balance, Pose, ResetBounds, Task};
@@ -125,7 +125,7 @@ fn a_regulator_stays_upright_from_100_initial_states() {
 #[test]
 fn a_task_has_data() {
     let mut acrobot = Acrobot::<Fast, Reach>::new(1);
-    let mut batch = VecBatch::<Fast, Reach>::new(SeedSequence::new(1), 20).unwrap();
+    let mut batch = VecBatch::<Fast, Reach>::new(1, 20).unwrap();
     let [.., beyond] = acrobot.observation();
     assert!((6.0..8.0).contains(&beyond), "{beyond}");
     assert!(!acrobot.step(Action::Zero).terminated);

@@ -16,7 +16,6 @@ use super::storage::Storage;
 use super::vec_batch::VecBatch;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
-use crate::numpy::SeedSequence;
 use crate::physics::Params;
 use crate::snapshot::Header;
 use crate::task::{Draw, Draws, ResetBounds, Task};
@@ -67,7 +66,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     where
         D: Deserializer<'de>,
     {
-        let mut batch = Self::new(SeedSequence::new(0), storage).map_err(D::Error::custom)?;
+        let mut batch = Self::new(0, storage).map_err(D::Error::custom)?;
         let mut index = 0;
         let settings = read(deserializer, |member| {
             index += 1;
@@ -117,8 +116,8 @@ impl<'de, A: Arithmetic, T: Task, const N: usize> serde::Deserialize<'de> for Ve
             Ok(())
         })?;
         let assemble = || {
-            let (seed, len) = (SeedSequence::new(0), members.len());
-            let mut batch = Self::new(seed, len)?;
+            let len = members.len();
+            let mut batch = Self::new(0, len)?;
             if settings.own_params {
                 batch.own_params()?;
             }

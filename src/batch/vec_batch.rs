@@ -67,7 +67,7 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     /// # Errors
     ///
     /// [`Error::EmptyBatch`] for a `len` of 0, and [`Error::OutOfMemory`].
-    pub fn new(seed: SeedSequence, len: usize) -> Result<Self, Error> {
+    pub fn new(seed: impl Into<SeedSequence>, len: usize) -> Result<Self, Error> {
         let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
         let generators = fill(Pcg64::UNSEEDED, len, len)?;
         let memory = BatchMemory { blocks, generators, own: OwnParams::new(Vec::new()) };

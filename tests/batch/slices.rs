@@ -1,7 +1,6 @@
 //! What a batch reads and writes: rejected input changes nothing.
 
 use acrobot::batch::{Member, SimdLevel, StepBuffers, VecBatch};
-use acrobot::numpy::SeedSequence;
 use acrobot::task::Draws;
 use acrobot::{Fast, Params, ResetOptions, State};
 use common::twins::LEVELS;
@@ -10,7 +9,7 @@ use common::twins::LEVELS;
 type Small = VecBatch<Fast>;
 
 fn small() -> Small {
-    VecBatch::new(SeedSequence::new(1), 3).unwrap()
+    VecBatch::new(1, 3).unwrap()
 }
 
 #[test]

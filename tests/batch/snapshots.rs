@@ -4,14 +4,14 @@
 use std::fmt::Debug;
 
 use acrobot::batch::{Batch, BatchMemory, Block, LaneParams, OwnParams, VecBatch};
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::numpy::Pcg64;
 use acrobot::task::Gymnasium;
 use acrobot::{Acrobot, Fast};
 use common::draws;
 use serde_json::json;
 
 fn three(own_params: bool) -> VecBatch<Fast> {
-    let mut batch = VecBatch::new(SeedSequence::new(1), 3).unwrap();
+    let mut batch = VecBatch::new(1, 3).unwrap();
     if own_params {
         batch.own_params().unwrap();
     }

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Damped};
 use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams, StepBuffers};
-use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Pendulum;
 use acrobot::task::{Balance, Draw, Gymnasium, Swingup};
 use acrobot::{Action, Error, Fast, ResetOptions};
@@ -83,11 +83,10 @@ fn memory<A: Arithmetic>(count: usize, own_params: bool) -> Option<Memory<A>> {
 
 impl Many {
     fn new(count: usize, own_params: bool, task: u32, is_alone: bool) -> Option<Self> {
-        let seed = SeedSequence::new(0);
         let batch = match task {
-            0 => Tasks::Acrobot(Batch::new(seed, memory(count, own_params)?).ok()?),
-            1 => Tasks::Swingup(Batch::new(seed, memory(count, own_params)?).ok()?),
-            _ => Tasks::Balance(Batch::new(seed, memory(count, own_params)?).ok()?),
+            0 => Tasks::Acrobot(Batch::new(0, memory(count, own_params)?).ok()?),
+            1 => Tasks::Swingup(Batch::new(0, memory(count, own_params)?).ok()?),
+            _ => Tasks::Balance(Batch::new(0, memory(count, own_params)?).ok()?),
         };
         // SAFETY: all are numbers and flags.
         let mut many = unsafe {

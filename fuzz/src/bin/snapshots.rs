@@ -154,7 +154,7 @@ impl<A: Arithmetic> Snapshot for Member<A> {
             && self.params.validate().is_ok()
             && (A::HAS_FRICTION || !has_friction);
         for autoreset in [Autoreset::NextStep, Autoreset::SameStep, Autoreset::Disabled] {
-            let mut batch = VecBatch::<A>::new(0.into(), 1).expect("memory for one");
+            let mut batch = VecBatch::<A>::new(0, 1).expect("memory for one");
             batch.own_params().expect("memory for one");
             batch.set_autoreset(autoreset);
             assert_eq!(batch.set_member(0, self.clone()).is_ok(), valid);
@@ -176,7 +176,7 @@ fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, Gymnasium
 /// With one or three lanes each acrobot has its own parameters.
 impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, Gymnasium, N> {
     fn sample() -> Self {
-        let mut batch = Self::new(42.into(), 4).expect("memory for four");
+        let mut batch = Self::new(42, 4).expect("memory for four");
         if N < 4 {
             let [low, high] = [0.0, 0.5].map(A::Scalar::from_f64);
             let torque_noise = Draw::Uniform { low, high };

@@ -43,7 +43,7 @@ fn mean(mut policy: impl FnMut(&State<f32>) -> Action) -> f64 {
     let mut env = TimeLimit::with_task_limit(Acrobot::<Fast>::new(0));
     let mut sum = 0.0;
     for seed in 0..SEEDS {
-        env.reset_with_seed(seed.into());
+        env.reset_with_seed(u64::from(seed));
         loop {
             let step = env.step(policy(&env.state()));
             sum += f64::from(step.reward);

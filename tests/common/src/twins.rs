@@ -29,7 +29,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
             batch.own_params().unwrap();
         }
         batch.set_autoreset(autoreset);
-        let alone = |i| TimeLimit::new(Acrobot::with_rng(seed.child(i).into()), T::MAX_STEPS);
+        let alone = |i| TimeLimit::new(Acrobot::new(seed.child(i)), T::MAX_STEPS);
         Self { batch, alone: (0..len as u64).map(alone).collect(), done: vec![false; len] }
     }
 

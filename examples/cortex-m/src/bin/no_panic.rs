@@ -141,8 +141,7 @@ fn control<A: Arithmetic>() {
 fn environment<A: Arithmetic, T: Task>() {
     let mut seeds = SeedSequence::new(black_box(42));
     for seed in seeds.spawn(black_box(2)) {
-        let mut acrobot =
-            TimeLimit::with_task_limit(Acrobot::<A, T>::with_rng(seed.clone().into()));
+        let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A, T>::new(seed.clone()));
         let mut trajectory = Trajectory::<A::Scalar, 8>::new();
         let inner = acrobot.inner_mut();
         let _ = black_box((

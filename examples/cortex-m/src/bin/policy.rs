@@ -56,7 +56,7 @@ fn main() -> ! {
 /// The first acrobot of a batch with seed 1.
 fn env() -> TimeLimit<Acrobot<Fast>> {
     let mut env = TimeLimit::with_task_limit(Acrobot::new(0));
-    env.reset_with(SeedSequence::new(1).child(0).into());
+    env.reset_with_seed(SeedSequence::new(1).child(0));
     env
 }
 
