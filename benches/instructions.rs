@@ -47,10 +47,10 @@ fn counted(steps: &mut dyn FnMut()) {
 fn alone<A: Arithmetic>() {
     let mut rng = Pcg64::new(0);
     let actions: Vec<_> = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
-    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(0));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A>::new(0));
     counted(&mut || {
         for &action in &actions {
-            if black_box(acrobot.step(action)).done() {
+            if black_box(acrobot.step(action)).is_done() {
                 acrobot.reset();
             }
         }

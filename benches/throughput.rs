@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Reference};
 use acrobot::batch::{SimdLevel, VecBatch};
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::numpy::Pcg64;
 use acrobot::task::{Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use benches::{Lanes, Play, bare_f32, bare_f64};
@@ -30,7 +30,7 @@ fn main() {
     for len in [1024, 1 << 20] {
         batch::<Fast>("fast", len, SimdLevel::widest());
     }
-    let mut own = VecBatch::<Fast>::new(SeedSequence::new(0), 1024).expect("memory for the batch");
+    let mut own = VecBatch::<Fast>::new(0, 1024).expect("memory for the batch");
     own.own_params().expect("memory for the batch");
     versus("batch_fast_1024_own_params", Play::from(own), Play::<Fast>::new(1024));
     let swingup = Play::<Damped<Fast>, Swingup>::new(1024);
@@ -64,10 +64,10 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
     const STEPS: usize = 200_000;
     let mut rng = Pcg64::new(0);
     let actions: Vec<Action> = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
-    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(0));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A>::new(0));
     let ours = || {
         for &action in &actions {
-            if black_box(acrobot.step(action)).done() {
+            if black_box(acrobot.step(action)).is_done() {
                 acrobot.reset();
             }
         }

@@ -6,9 +6,9 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::{Real, SinCos};
-use crate::numpy::Pcg64;
+use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{Params, Pendulum, State, check_torque, default_model};
-use crate::task::{Draws, Gymnasium, Observation, ResetBounds, ResetOptions, Seen, Task, episode};
+use crate::task::{Draws, Gymnasium, Observation, Pose, ResetBounds, ResetOptions, Task, episode};
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
@@ -33,7 +33,7 @@ impl<O> Step<O> {
     /// Whether the episode is over: `terminated` or `truncated`.
     #[must_use]
     #[inline]
-    pub fn done(&self) -> bool {
+    pub fn is_done(&self) -> bool {
         self.terminated || self.truncated
     }
 }
@@ -67,24 +67,26 @@ pub struct Acrobot<A: Arithmetic, T = Gymnasium, R = Pcg64> {
 
 impl<A: Arithmetic, T: Task> Acrobot<A, T> {
     /// An acrobot with the default parameters, in the initial state of Gymnasium's
-    /// `reset(seed=seed)`. For a [`SeedSequence`](crate::numpy::SeedSequence):
-    /// `Acrobot::with_rng(sequence.into())`.
+    /// `reset(seed=seed)`.
     #[must_use]
-    pub fn new(seed: u64) -> Self {
-        Self::with_rng(Pcg64::new(seed))
+    pub fn new(seed: impl Into<SeedSequence>) -> Self {
+        Self::with_rng(seed.into().into())
     }
 
     /// As [`new`](Self::new), with other parameters, and the errors of
     /// [`set_params`](Self::set_params). They change no initial state.
-    pub fn with_params(seed: u64, params: Params<A::Scalar>) -> Result<Self, Error> {
+    pub fn with_params(
+        seed: impl Into<SeedSequence>,
+        params: Params<A::Scalar>,
+    ) -> Result<Self, Error> {
         let mut acrobot = Self::new(seed);
         acrobot.set_params(params)?;
         Ok(acrobot)
     }
 
     /// Gymnasium's `reset(seed=seed)`: seeds the generator and draws an initial state from it.
-    pub fn reset_with_seed(&mut self, seed: u64) -> T::Observation {
-        self.rng = Pcg64::new(seed);
+    pub fn reset_with_seed(&mut self, seed: impl Into<SeedSequence>) -> T::Observation {
+        self.rng = seed.into().into();
         self.reset()
     }
 
@@ -168,8 +170,8 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
 
     #[inline]
     fn observe(&self, sin_cos: [SinCos<A::Scalar>; 2]) -> T::Observation {
-        let seen = Seen { state: self.state(), sin_cos };
-        T::Observation::rounded(self.task.observe::<A, A::Scalar>(&seen))
+        let pose = Pose { state: self.state(), sin_cos };
+        T::Observation::rounded(self.task.observe::<A, A::Scalar>(&pose))
     }
 
     /// The task.

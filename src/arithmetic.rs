@@ -169,7 +169,7 @@ impl Arithmetic for Micro {
 
     #[inline(always)]
     fn sin_cos_near<V: Numbers<f32>>(x: V) -> (V, V) {
-        x.map2(table::sin_cos)
+        x.map_unzip(table::sin_cos)
     }
 }
 

@@ -28,7 +28,7 @@ pub use inputs::Input;
 pub use lane_params::LaneParams;
 pub use member::Member;
 pub use settings::Autoreset;
-pub use storage::Storage;
+pub use storage::{BatchMemory, OwnParams, Storage};
 #[cfg(feature = "alloc")]
 pub use vec_batch::{StepResults, VecBatch};
 
@@ -50,7 +50,7 @@ use work::Work;
 /// child, under a [`TimeLimit`](crate::TimeLimit), whatever `N` and the [SIMD
 /// instructions](SimdLevel).
 ///
-/// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32, or the program does not compile.
+/// `S` is its [memory](BatchMemory). `N` must be from 1 to 32, or the program does not compile.
 ///
 /// # Snapshots
 ///
@@ -181,25 +181,23 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         self.storage.slices_mut().generators
     }
 
-    /// The number of steps of acrobot `index` since its last reset, if there is one.
-    #[must_use]
-    pub fn elapsed_steps_of(&self, index: usize) -> Option<u32> {
-        let (elapsed_steps, _) = self.block_of(index).ok()?.progress(index % N)?;
-        Some(elapsed_steps)
+    /// The number of steps of acrobot `index` since its last reset, or [`Error::NoSuchIndex`].
+    pub fn elapsed_steps(&self, index: usize) -> Result<u32, Error> {
+        let (block, _) = self.block_and_rng(index)?;
+        Ok(block.progress(index % N).0)
     }
 
-    /// Whether the episode of acrobot `index`, if there is one, has ended and it waits for a reset:
-    /// by the next step or, with [`Autoreset::Disabled`], by the caller.
-    #[must_use]
-    pub fn ended_of(&self, index: usize) -> Option<bool> {
-        let (_, ended) = self.block_of(index).ok()?.progress(index % N)?;
-        Some(ended)
+    /// Whether the episode of acrobot `index` has ended and it waits for a reset: by the next step
+    /// or, with [`Autoreset::Disabled`], by the caller. Or [`Error::NoSuchIndex`].
+    pub fn is_done(&self, index: usize) -> Result<bool, Error> {
+        let (block, _) = self.block_and_rng(index)?;
+        Ok(block.progress(index % N).1)
     }
 
-    /// The state of acrobot `index`, if there is one.
-    #[must_use]
-    pub fn state_of(&self, index: usize) -> Option<State<A::Scalar>> {
-        self.block_of(index).ok()?.state(index % N)
+    /// The state of acrobot `index`, or [`Error::NoSuchIndex`].
+    pub fn state(&self, index: usize) -> Result<State<A::Scalar>, Error> {
+        let (block, _) = self.block_and_rng(index)?;
+        Ok(block.state(index % N))
     }
 
     /// Sets the state of acrobot `index`. Its episode continues, or still waits for a reset.
@@ -207,19 +205,19 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// # Errors
     ///
     /// [`Error::NoSuchIndex`], and [`Error::OutOfRange`] for a number that is not finite.
-    pub fn set_state_of(&mut self, index: usize, state: State<A::Scalar>) -> Result<(), Error> {
+    pub fn set_state(&mut self, index: usize, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
-        self.block_of(index)?;
-        if let Some(block) = self.storage.slices_mut().blocks.get_mut(index / N) {
-            block.set_state(index % N, state);
-        }
+        let len = self.len();
+        let block = self.storage.slices_mut().blocks.get_mut(index / N).filter(|_| index < len);
+        block.ok_or(Error::NoSuchIndex { index, len })?.set_state(index % N, state);
         Ok(())
     }
 
-    fn block_of(&self, index: usize) -> Result<&Block<A, N>, Error> {
-        let (slices, len) = (self.storage.slices(), self.len());
-        let block = slices.blocks.get(index / N).filter(|_| index < len);
-        block.ok_or(Error::NoSuchIndex { index, len })
+    /// The block of acrobot `index`, and its generator.
+    fn block_and_rng(&self, index: usize) -> Result<(&Block<A, N>, &Pcg64), Error> {
+        let slices = self.storage.slices();
+        let both = slices.blocks.get(index / N).zip(slices.generators.get(index));
+        both.ok_or(Error::NoSuchIndex { index, len: self.len() })
     }
 
     /// The task.
@@ -278,7 +276,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     pub fn set_autoreset(&mut self, autoreset: Autoreset) {
         self.settings.autoreset = autoreset;
         for (block, generators, own) in each_block(&mut self.storage) {
-            block.reset_ended(&self.settings, generators, own);
+            block.reset_done(&self.settings, generators, own);
         }
     }
 }

@@ -11,6 +11,7 @@ pub use space::BoxSpace;
 use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
+use crate::numpy::SeedSequence;
 use crate::task::{ResetOptions, Task};
 use crate::time_limit::TimeLimit;
 
@@ -39,7 +40,7 @@ use crate::time_limit::TimeLimit;
 ///     }
 /// }
 ///
-/// let mut env = Scaled(TimeLimit::of(Acrobot::<Portable>::new(42)));
+/// let mut env = Scaled(TimeLimit::with_task_limit(Acrobot::<Portable>::new(42)));
 /// assert_eq!(env.step(Action::Zero).reward, -0.002);
 /// ```
 pub trait Env: Send {
@@ -58,9 +59,12 @@ pub trait Env: Send {
         self.reset_with(ResetOptions::default())
     }
 
-    /// Gymnasium's `reset(seed=seed)`.
-    fn reset_with_seed(&mut self, seed: u64) -> Vec<f32> {
-        self.reset_with(seed.into())
+    /// Gymnasium's `reset(seed=seed)`. For a `&mut dyn Env`: `reset_with(seed.into())`.
+    fn reset_with_seed(&mut self, seed: impl Into<SeedSequence>) -> Vec<f32>
+    where
+        Self: Sized,
+    {
+        self.reset_with(seed.into().into())
     }
 }
 

@@ -6,7 +6,7 @@
 //! ```
 //! use acrobot::{Acrobot, Action, Fast, TimeLimit};
 //!
-//! let mut env = TimeLimit::of(Acrobot::<Fast>::new(0)); // env = gym.make("Acrobot-v1")
+//! let mut env = TimeLimit::with_task_limit(Acrobot::<Fast>::new(0)); // gym.make("Acrobot-v1")
 //! let mut observation = env.reset_with_seed(42); // env.reset(seed=42)
 //! loop {
 //!     // Torque against the velocity of link 1.
@@ -16,7 +16,7 @@
 //!         false => Action::Positive,
 //!     };
 //!     let step = env.step(action);
-//!     if step.done() {
+//!     if step.is_done() {
 //!         break;
 //!     }
 //!     observation = step.observation;

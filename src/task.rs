@@ -66,10 +66,10 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
     }
 
     /// The observation: `[V; N]`, rounded to `f32` afterwards. That of
-    /// [`Acrobot-v1`](Gymnasium) is `Gymnasium.observe::<A, V>(seen)`.
+    /// [`Acrobot-v1`](Gymnasium) is `Gymnasium.observe::<A, V>(pose)`.
     fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        seen: &Seen<V>,
+        pose: &Pose<V>,
     ) -> <Self::Observation as Observation>::Of<V>;
 
     /// The largest magnitude of each number of an observation, in its unit: the bounds of the
@@ -82,34 +82,36 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
 
     /// Whether the new state ends the episode: never, unless it is replaced.
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, _: &Seen<V>) -> V::Mask {
-        V::splat(A::Scalar::ZERO).above(A::Scalar::ZERO)
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, _: &Pose<V>) -> V::Mask {
+        let zero = V::splat(A::Scalar::ZERO);
+        zero.simd_gt(zero)
     }
 
-    /// The reward of a step to the new state, which `ended` the episode or not. `torque` is the one
-    /// that acted, N m, with its noise. −1, or 0 at the end, unless it is replaced.
+    /// The reward of a step to the new state, which `terminated` the episode or not. `torque` is
+    /// the one that acted, N m, with its noise. −1, or 0 if `terminated`, unless it is replaced.
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        _seen: &Seen<V>,
+        _pose: &Pose<V>,
         _params: &Params<V>,
         _torque: V,
-        ended: V::Mask,
+        terminated: V::Mask,
     ) -> V::Single {
-        V::Single::either(ended, 0.0, -1.0)
+        V::Single::select(terminated, V::Single::splat(0.0), V::Single::splat(-1.0))
     }
 }
 
-/// A state, of one acrobot or of many, with the sines and cosines of its angles.
+/// Where the links of one acrobot or of many are and how they move: a state, with the sines and
+/// cosines of its angles.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<V> {
+pub struct Pose<V> {
     /// The state.
     pub state: State<V>,
     /// Sine and cosine of θ1, then of θ2.
     pub sin_cos: [(V, V); 2],
 }
 
-impl<V> Seen<V>
+impl<V> Pose<V>
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<Output = V> + Neg<Output = V>,
 {

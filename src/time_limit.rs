@@ -1,6 +1,7 @@
 //! Truncation: a limit on the steps of an episode.
 
 use core::num::NonZeroU32;
+use core::ops::Deref;
 
 use rand_core::Rng;
 
@@ -8,7 +9,7 @@ use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
-use crate::physics::{Params, State};
+use crate::numpy::SeedSequence;
 use crate::task::{ResetOptions, Task, episode};
 
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` from the
@@ -74,7 +75,7 @@ impl<A: Arithmetic, T: Task> TimeLimit<Acrobot<A, T>> {
     pub const MAX_SNAPSHOT_SIZE: usize = Acrobot::<A, T>::MAX_SNAPSHOT_SIZE + 2 * 5;
 
     /// Calls [`Acrobot::reset_with_seed`] and sets the count of steps to 0.
-    pub fn reset_with_seed(&mut self, seed: u64) -> T::Observation {
+    pub fn reset_with_seed(&mut self, seed: impl Into<SeedSequence>) -> T::Observation {
         self.elapsed_steps = 0;
         self.inner.reset_with_seed(seed)
     }
@@ -89,39 +90,29 @@ impl<A: Arithmetic, T: Task> TimeLimit<Acrobot<A, T>> {
 impl<A: Arithmetic, T: Task, R> TimeLimit<Acrobot<A, T, R>> {
     /// Truncates episodes after the steps that [the task has](Task::MAX_STEPS): 500 in Gymnasium's.
     #[must_use]
-    pub const fn of(inner: Acrobot<A, T, R>) -> Self {
+    pub const fn with_task_limit(inner: Acrobot<A, T, R>) -> Self {
         Self::new(inner, T::MAX_STEPS)
     }
+}
 
-    /// The state.
-    #[must_use]
+/// To read the acrobot. To change it, there is [`inner_mut`](TimeLimit::inner_mut): with `DerefMut`
+/// a function that takes an acrobot could step it past the counter.
+///
+/// ```compile_fail,E0596
+/// # use acrobot::{Acrobot, Action, Fast, TimeLimit};
+/// fn step(acrobot: &mut Acrobot<Fast>) {
+///     acrobot.step(Action::Zero);
+/// }
+///
+/// step(&mut TimeLimit::with_task_limit(Acrobot::new(42)));
+/// ```
+// Not for any `E`: the methods of another wrapper would step past the counter.
+impl<A: Arithmetic, T, R> Deref for TimeLimit<Acrobot<A, T, R>> {
+    type Target = Acrobot<A, T, R>;
+
     #[inline]
-    pub fn state(&self) -> State<A::Scalar> {
-        self.inner.state()
-    }
-
-    /// The observation of the state.
-    #[must_use]
-    #[inline]
-    pub fn observation(&self) -> T::Observation {
-        self.inner.observation()
-    }
-
-    /// Calls [`Acrobot::set_state`], with its errors. The count of steps does not change.
-    pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
-        self.inner.set_state(state)
-    }
-
-    /// The parameters.
-    #[must_use]
-    #[inline]
-    pub fn params(&self) -> &Params<A::Scalar> {
-        self.inner.params()
-    }
-
-    /// Calls [`Acrobot::set_params`], with its errors. The count of steps does not change.
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
-        self.inner.set_params(params)
+    fn deref(&self) -> &Self::Target {
+        &self.inner
     }
 }
 

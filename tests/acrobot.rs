@@ -67,21 +67,21 @@ fn a_tip_at_the_target_height_is_not_in_the_goal() {
 fn time_limits_truncate_whether_or_not_an_episode_terminates() {
     fn check<T: Task>(mut acrobot: TimeLimit<Acrobot<Fast, T>>, limit: u32) {
         assert!((1..limit).all(|_| !acrobot.step(Action::Zero).truncated));
-        acrobot.set_state(State::UPRIGHT).unwrap();
+        acrobot.inner_mut().set_state(State::UPRIGHT).unwrap();
         let last = acrobot.step(Action::Zero);
-        assert!(last.terminated && last.truncated && last.done(), "both on the last step");
-        acrobot.set_state(State::HANGING).unwrap();
+        assert!(last.terminated && last.truncated && last.is_done(), "both on the last step");
+        acrobot.inner_mut().set_state(State::HANGING).unwrap();
         let beyond = acrobot.step(Action::Zero);
-        assert!(!beyond.terminated && beyond.truncated && beyond.done(), "as in Gymnasium");
+        assert!(!beyond.terminated && beyond.truncated && beyond.is_done(), "as in Gymnasium");
         acrobot.reset();
-        assert!(!acrobot.step(Action::Zero).done());
+        assert!(!acrobot.step(Action::Zero).is_done());
         acrobot.set_max_steps(3.try_into().unwrap());
-        assert!(!acrobot.step(Action::Zero).done());
+        assert!(!acrobot.step(Action::Zero).is_done());
         assert!(acrobot.step(Action::Zero).truncated, "the count goes on");
         assert_eq!(acrobot.elapsed_steps(), 3);
     }
-    check(TimeLimit::of(Acrobot::<Fast>::new(1)), 500);
-    check(TimeLimit::of(Acrobot::<Fast, GymnasiumV0>::new(1)), 200);
+    check(TimeLimit::with_task_limit(Acrobot::<Fast>::new(1)), 500);
+    check(TimeLimit::with_task_limit(Acrobot::<Fast, GymnasiumV0>::new(1)), 200);
 }
 
 #[test]
@@ -102,8 +102,8 @@ fn acrobots_are_equal_by_parameters_state_and_generator() {
 
 #[test]
 fn reset_with_takes_a_seed_and_bounds() {
-    let new = TimeLimit::of(Acrobot::<Fast>::new(7));
-    let mut acrobot = TimeLimit::of(Acrobot::new(0));
+    let new = TimeLimit::with_task_limit(Acrobot::<Fast>::new(7));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::new(0));
     let resets: [fn(&mut TimeLimit<Acrobot<Fast>>) -> _; 3] = [
         |acrobot| acrobot.reset_with_seed(7),
         |acrobot| acrobot.reset_with(7.into()),

@@ -18,8 +18,10 @@ fn environments_play_gymnasiums_runs() {
     for row in lines(include_str!("data/seeds.txt"), "play") {
         let [id, seed, digest, episodes] = row.split(' ').collect::<Vec<_>>().try_into().unwrap();
         let mut env: Box<dyn Env> = match id {
-            "Acrobot-v0" => Box::new(TimeLimit::of(Acrobot::<Host, GymnasiumV0>::new(0))),
-            _ => Box::new(TimeLimit::of(Acrobot::<Host>::new(0))),
+            "Acrobot-v0" => {
+                Box::new(TimeLimit::with_task_limit(Acrobot::<Host, GymnasiumV0>::new(0)))
+            }
+            _ => Box::new(TimeLimit::with_task_limit(Acrobot::<Host>::new(0))),
         };
         let sequence: SeedSequence = seed.parse().unwrap();
         let mut actions = Pcg64::from(sequence.clone());
@@ -33,7 +35,7 @@ fn environments_play_gymnasiums_runs() {
             found.add((step.reward == 0.0).into());
             found.add(step.terminated.into());
             found.add(step.truncated.into());
-            if step.done() {
+            if step.is_done() {
                 ends += 1;
                 env.reset();
             }

@@ -2,8 +2,7 @@
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
 use acrobot::batch::VecBatch;
-
-use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::task::{Draw, Draws};
 use acrobot::{Acrobot, Params, Portable, State, TimeLimit};
@@ -127,9 +126,9 @@ fn an_arithmetic_without_friction_rejects_it() {
     let damping2 = Draw::Uniform { low: 0.0, high: 0.5 };
     let draws = Draws::new(Params { damping2, ..Draws::FIXED }).unwrap();
     let mut pendulum = Pendulum::<Portable>::hanging();
-    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(0));
-    let mut batch = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
-    let shared = batch.set_params(with);
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Portable>::new(0));
+    let mut batch = VecBatch::<Portable>::new(0, 2).unwrap();
+    let shared = batch.set_all_params(with);
     batch.own_params().unwrap();
     let mut member = batch.member(0).unwrap();
     member.params = with;
@@ -139,9 +138,9 @@ fn an_arithmetic_without_friction_rejects_it() {
         Pendulum::<Portable>::new(with, State::HANGING).map(drop),
         with.pendulum::<Portable>(State::HANGING).map(drop),
         pendulum.set_params(with),
-        acrobot.set_params(with),
-        batch.set_params(with),
-        batch.set_params_of(1, with),
+        acrobot.inner_mut().set_params(with),
+        batch.set_all_params(with),
+        batch.set_params(1, with),
         batch.set_member(1, member),
         batch.set_draws(draws),
     ] {

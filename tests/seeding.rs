@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 
-use acrobot::batch::{Batch, Block};
+use acrobot::batch::{Batch, BatchMemory, Block};
 use acrobot::env::Env;
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::{Acrobot, Fast, Portable};
@@ -114,10 +114,11 @@ fn there_is_always_a_next_child() {
     let words = [0xc75e_27e1_5183_9fa7, 0x22de_3ff0_2e47_cbe8];
     assert_eq!(next.generate_state(), words);
 
-    let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 1]);
+    let (blocks, generators) = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 1]);
+    let memory = BatchMemory { blocks, generators, own: () };
     let batch = Batch::<Fast, _>::new(seed, memory).unwrap();
-    let alone = Acrobot::<Fast>::with_rng(next.into());
-    assert_eq!(batch.state_of(0), Some(alone.state()));
+    let alone = Acrobot::<Fast>::new(next);
+    assert_eq!(batch.state(0), Ok(alone.state()));
 }
 
 /// A text of up to 4300 digits is a seed. A longer one is rejected at once.

@@ -3,7 +3,6 @@
 
 use acrobot::arithmetic::{Arithmetic, Damped, Reference};
 use acrobot::batch::{Member, VecBatch};
-use acrobot::numpy::SeedSequence;
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use serde::Serialize;
@@ -13,7 +12,7 @@ type Limited = TimeLimit<Acrobot<Portable>>;
 
 /// An acrobot in the middle of an episode with noise. Its generator keeps half a draw.
 fn busy() -> Limited {
-    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(u64::MAX));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Portable>::new(u64::MAX));
     let inner = acrobot.inner_mut();
     inner.set_params(Params { torque_noise: 0.1, mass2: 1.5, ..Params::DEFAULT }).unwrap();
     Action::sample(inner.rng_mut());
@@ -62,7 +61,7 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
 
 /// A batch whose resets draw parameters, after a step.
 fn batch() -> VecBatch<Fast> {
-    let mut batch = VecBatch::new(SeedSequence::new(42), 2).unwrap();
+    let mut batch = VecBatch::new(42, 2).unwrap();
     batch.own_params().unwrap();
     batch.set_draws(common::draws::<Fast>()).unwrap();
     batch.set_reset_bounds(ResetBounds::new(-0.5, 0.25).unwrap());
@@ -121,7 +120,8 @@ fn snapshots_of_version_6_stay_readable() {
 #[test]
 fn no_snapshot_is_larger_than_its_constant() {
     fn check<A: Arithmetic>() {
-        let mut largest = serde_json::to_value(TimeLimit::of(Acrobot::<A>::new(0))).unwrap();
+        let mut largest =
+            serde_json::to_value(TimeLimit::with_task_limit(Acrobot::<A>::new(0))).unwrap();
         largest["inner"]["rng"] = serde_json::json!({
             "seed": ([u32::MAX; 8]), "position": u64::MAX, "has_half": true, "half": u32::MAX
         });

@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::batch::VecBatch;
-use acrobot::numpy::SeedSequence;
 use acrobot::task::{Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use common::{distance, numbers, text_of};
@@ -95,13 +94,13 @@ fn orientations_within_1<A: Arithmetic>() {
         assert!(seen[..4].iter().all(|x| x.abs() <= 1.0), "{seen:?}");
     };
     let mut acrobot = Acrobot::<A, Swingup>::new(0);
-    let mut batch = VecBatch::<A, Swingup>::new(SeedSequence::new(1), 20_000).unwrap();
+    let mut batch = VecBatch::<A, Swingup>::new(1, 20_000).unwrap();
     for index in 0..batch.len() {
-        let drawn = batch.state_of(index).unwrap();
+        let drawn = batch.state(index).unwrap();
         let aside = f64::from(index as u32 % 8) * (PI / 2.0) - drawn.theta1.to_f64();
         let theta2 = Real::from_f64(aside);
         let state = State { theta2, ..drawn };
-        batch.set_state_of(index, state).unwrap();
+        batch.set_state(index, state).unwrap();
         acrobot.set_state(state).unwrap();
         within(&acrobot.observation());
         within(&acrobot.step(Action::Zero).observation);
@@ -150,6 +149,6 @@ fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
     assert!(quadrants.into_iter().all(|count| count > 30), "{quadrants:?}");
 
     let mut episode = TimeLimit::new(acrobot, Swingup::MAX_STEPS);
-    let lengths = (1..).find(|_| episode.step(Action::Positive).done());
+    let lengths = (1..).find(|_| episode.step(Action::Positive).is_done());
     assert_eq!(lengths, Some(1000));
 }

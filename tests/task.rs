@@ -7,10 +7,10 @@ use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::batch::VecBatch;
 
 use acrobot::env::Env;
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::numpy::Pcg64;
 use acrobot::physics::{Pendulum, saturate};
 use acrobot::rand_core::Rng;
-use acrobot::task::{Balance, ResetBounds, Seen, Task};
+use acrobot::task::{Balance, Pose, ResetBounds, Task};
 use acrobot::{Acrobot, Action, Fast, Params, State};
 use common::twins::Twins;
 
@@ -23,9 +23,9 @@ struct Reach {
 impl Reach {
     /// How far the tip is beyond 0.2 m from the point, m², with links of 1 m.
     #[inline(always)]
-    fn beyond<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V {
+    fn beyond<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> V {
         let number = |x| V::splat(Real::from_f64(x));
-        let [(sin1, cos1), (sin2, cos2)] = seen.directions();
+        let [(sin1, cos1), (sin2, cos2)] = pose.directions();
         let [x, y] = self.point.map(number);
         let [x, y] = [sin1 + sin2 - x, -cos1 - cos2 - y];
         x * x + y * y - number(0.04)
@@ -47,9 +47,9 @@ impl Task for Reach {
     }
 
     #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 5] {
-        let State { theta1, theta2, dtheta1, dtheta2 } = seen.state;
-        [theta1, theta2, dtheta1, dtheta2, self.beyond::<A, V>(seen)]
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 5] {
+        let State { theta1, theta2, dtheta1, dtheta2 } = pose.state;
+        [theta1, theta2, dtheta1, dtheta2, self.beyond::<A, V>(pose)]
     }
 
     fn observation_high(&self, _: &Params<f32>) -> [f32; 5] {
@@ -57,21 +57,22 @@ impl Task for Reach {
     }
 
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
-        (-self.beyond::<A, V>(seen)).above(Real::ZERO)
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> V::Mask {
+        V::splat(Real::ZERO).simd_gt(self.beyond::<A, V>(pose))
     }
 
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        seen: &Seen<V>,
+        pose: &Pose<V>,
         params: &Params<V>,
         torque: V,
-        ended: V::Mask,
+        terminated: V::Mask,
     ) -> V::Single {
-        let [_, [x, y]] = seen.positions(params);
+        let [_, [x, y]] = pose.positions(params);
         let cost = (x * x + y * y) * V::splat(Real::from_f64(0.1)) + torque * torque;
-        V::Single::either(ended, 100.0, 0.0) - cost.to_f32()
+        let bonus = V::Single::select(terminated, V::Single::splat(100.0), V::Single::splat(0.0));
+        bonus - cost.to_f32()
     }
 }
 
@@ -124,7 +125,7 @@ fn a_regulator_stays_upright_from_100_initial_states() {
 #[test]
 fn a_task_has_data() {
     let mut acrobot = Acrobot::<Fast, Reach>::new(1);
-    let mut batch = VecBatch::<Fast, Reach>::new(SeedSequence::new(1), 20).unwrap();
+    let mut batch = VecBatch::<Fast, Reach>::new(1, 20).unwrap();
     let [.., beyond] = acrobot.observation();
     assert!((6.0..8.0).contains(&beyond), "{beyond}");
     assert!(!acrobot.step(Action::Zero).terminated);

@@ -2,7 +2,7 @@
 //! neither hangs nor panics nor gives NaN.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
-use acrobot::batch::{Batch, Block};
+use acrobot::batch::{Batch, BatchMemory, Block};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Pendulum;
 use acrobot::task::{Draw, Draws, ResetBounds};
@@ -12,9 +12,10 @@ use common::{Repeating, in_every_arithmetic};
 /// Errors of calls that not all languages have: `rejections.rs` has the others.
 #[test]
 fn errors_name_the_value_and_the_rule() {
-    type Memory<const LEN: usize> = ([Block; 3], [Pcg64; LEN]);
+    type Memory<const LEN: usize> = BatchMemory<[Block; 3], [Pcg64; LEN]>;
     fn batch<const LEN: usize>() -> Result<Batch<Fast, Memory<LEN>>, Error> {
-        Batch::new(1, ([Block::EMPTY; 3], [Pcg64::UNSEEDED; LEN]))
+        let (blocks, generators) = ([Block::EMPTY; 3], [Pcg64::UNSEEDED; LEN]);
+        Batch::new(1, BatchMemory { blocks, generators, own: () })
     }
     fn seed(text: &str) -> Result<(), Error> {
         text.parse::<SeedSequence>().map(drop)
@@ -89,11 +90,11 @@ fn a_link_needs_inertia_about_its_joint() {
 #[test]
 fn states_and_torques_that_are_not_finite_are_rejected() {
     let state = State { dtheta2: f64::NAN, ..State::HANGING };
-    let mut acrobot = TimeLimit::of(Acrobot::<Portable>::new(1));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Portable>::new(1));
     let mut pendulum = Pendulum::<Portable>::new(Params::DEFAULT, acrobot.state()).unwrap();
     let before = (acrobot.clone(), pendulum.clone());
     for result in [
-        acrobot.set_state(state),
+        acrobot.inner_mut().set_state(state),
         pendulum.set_state(state),
         Pendulum::<Portable>::new(Params::DEFAULT, state).map(drop),
         Params::<f64>::DEFAULT.pendulum::<Portable>(state).map(drop),

@@ -2,7 +2,6 @@
 
 use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::{StepBuffers, VecBatch};
-use acrobot::numpy::SeedSequence;
 use acrobot::task::{Gymnasium, Task};
 
 /// The policy: the next action of a stream. It costs little compared with a step, and SIMD can
@@ -42,7 +41,7 @@ impl<A: Arithmetic, T: Task> From<VecBatch<A, T>> for Play<A, T> {
 
 impl<A: Arithmetic, T: Task> Play<A, T> {
     pub fn new(len: usize) -> Self {
-        Self::from(VecBatch::new(SeedSequence::new(0), len).expect("memory for the batch"))
+        Self::from(VecBatch::new(0, len).expect("memory for the batch"))
     }
 
     /// Draws actions and steps. Returns the number of acrobots.

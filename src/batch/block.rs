@@ -8,7 +8,7 @@ use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real, SinCos};
 use crate::numpy::Pcg64;
 use crate::physics::{State, sin_cos};
-use crate::task::{Observation, ResetBounds, Seen, Task, episode};
+use crate::task::{Observation, Pose, ResetBounds, Task, episode};
 
 /// The states of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) has several.
 ///
@@ -23,7 +23,7 @@ pub struct Block<A: Arithmetic = Fast, const N: usize = 16> {
     sin_cos: [SinCos<Lanes<A::Scalar, N>>; 2],
     elapsed_steps: [u32; N],
     /// Whether the lane's episode has ended and it waits for a reset.
-    ended: [bool; N],
+    done: [bool; N],
 }
 
 impl<A: Arithmetic, const N: usize> Block<A, N> {
@@ -34,20 +34,16 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         y: [Self::ZEROS; 4],
         sin_cos: [(Self::ZEROS, Self::ZEROS); 2],
         elapsed_steps: [0; N],
-        ended: [false; N],
+        done: [false; N],
     };
 }
 
 // Lanes are accessed by iterators or `get`, so no compiler has to prove that an index cannot panic.
 impl<A: Arithmetic, const N: usize> Block<A, N> {
-    pub(super) fn state(&self, lane: usize) -> Option<State<A::Scalar>> {
-        let [theta1, theta2, dtheta1, dtheta2] = &self.y;
-        Some(State {
-            theta1: *theta1.0.get(lane)?,
-            theta2: *theta2.0.get(lane)?,
-            dtheta1: *dtheta1.0.get(lane)?,
-            dtheta2: *dtheta2.0.get(lane)?,
-        })
+    /// The state of a lane below `N`.
+    pub(super) fn state(&self, lane: usize) -> State<A::Scalar> {
+        let number = |numbers: &Lanes<_, N>| numbers.0.get(lane).copied().unwrap_or_default();
+        self.y.each_ref().map(number).into()
     }
 
     /// Sets the state of a lane. Its episode continues.
@@ -62,14 +58,15 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
-    /// The number of steps of a lane's episode, and whether that has ended.
-    pub(super) fn progress(&self, lane: usize) -> Option<(u32, bool)> {
-        Some((*self.elapsed_steps.get(lane)?, *self.ended.get(lane)?))
+    /// The number of steps of a lane's episode, and whether that has ended, for a lane below `N`.
+    pub(super) fn progress(&self, lane: usize) -> (u32, bool) {
+        let (elapsed_steps, done) = (self.elapsed_steps.get(lane), self.done.get(lane));
+        (elapsed_steps.copied().unwrap_or_default(), done.copied().unwrap_or_default())
     }
 
-    pub(super) fn set_progress(&mut self, lane: usize, elapsed_steps: u32, ended: bool) {
+    pub(super) fn set_progress(&mut self, lane: usize, elapsed_steps: u32, is_done: bool) {
         set(&mut self.elapsed_steps, lane, elapsed_steps);
-        set(&mut self.ended, lane, ended);
+        set(&mut self.done, lane, is_done);
     }
 
     pub(super) fn begin_episode(&mut self, lane: usize, state: State<A::Scalar>) {
@@ -105,15 +102,15 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     }
 
     /// With `SameStep` no lane waits: resets those whose episode has ended.
-    pub(super) fn reset_ended<T: Task>(
+    pub(super) fn reset_done<T: Task>(
         &mut self,
         settings: &Settings<A, T>,
         generators: &mut [Pcg64],
         own: Option<Own<'_, A, N>>,
     ) {
         if settings.autoreset == Autoreset::SameStep {
-            let ended = self.ended;
-            self.reset(&ended, settings, settings.bounds, generators, own);
+            let done = self.done;
+            self.reset(&done, settings, settings.bounds, generators, own);
         }
     }
 
@@ -126,11 +123,11 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         sines.zip(states).map(|(sines, states)| {
             let (((sin1, cos1), (sin2, cos2)), ((theta1, theta2), (dtheta1, dtheta2))) =
                 (sines, states);
-            let seen = Seen {
+            let pose = Pose {
                 state: [*theta1, *theta2, *dtheta1, *dtheta2].into(),
                 sin_cos: [(*sin1, *cos1), (*sin2, *cos2)],
             };
-            T::Observation::rounded(task.observe::<A, A::Scalar>(&seen))
+            T::Observation::rounded(task.observe::<A, A::Scalar>(&pose))
         })
     }
 
@@ -162,25 +159,25 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     ) -> Results<N> {
         let torques = inputs.torques(&model.params.torques);
         let resets = settings.autoreset == Autoreset::NextStep;
-        let generators = generators.iter_mut().zip(&self.ended);
-        let generators = generators.map(|(rng, ended)| (!(resets & ended)).then_some(rng));
+        let generators = generators.iter_mut().zip(&self.done);
+        let generators = generators.map(|(rng, done)| (!(resets & done)).then_some(rng));
         let torques = episode::disturb(torques, model.params.torque_noise, generators);
         let (y, sin_cos) = (&mut self.y, &mut self.sin_cos);
         let (Lanes(rewards), terminated) =
             episode::step::<A, T, Lanes<_, N>>(model, y, sin_cos, torques, &settings.task);
-        let (mut truncated, mut ended) = ([false; N], [false; N]);
-        let results = truncated.iter_mut().zip(&mut ended);
-        for ((elapsed_steps, terminated), (truncated, ended)) in
+        let (mut truncated, mut done) = ([false; N], [false; N]);
+        let results = truncated.iter_mut().zip(&mut done);
+        for ((elapsed_steps, terminated), (truncated, done)) in
             self.elapsed_steps.iter_mut().zip(&terminated).zip(results)
         {
             *truncated = episode::count(elapsed_steps, settings.max_steps);
-            *ended = *terminated | *truncated;
+            *done = *terminated | *truncated;
         }
         let resets = match settings.autoreset {
-            Autoreset::NextStep => core::mem::replace(&mut self.ended, ended),
-            Autoreset::SameStep => ended,
+            Autoreset::NextStep => core::mem::replace(&mut self.done, done),
+            Autoreset::SameStep => done,
             Autoreset::Disabled => {
-                self.ended.iter_mut().zip(ended).for_each(|(waits, ended)| *waits |= ended);
+                self.done.iter_mut().zip(done).for_each(|(waits, done)| *waits |= done);
                 [false; N]
             }
         };

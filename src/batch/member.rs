@@ -22,24 +22,19 @@ pub struct Member<A: Arithmetic> {
     /// The number of steps since the last reset.
     pub elapsed_steps: u32,
     /// Whether its episode has ended and it waits for a reset.
-    pub ended: bool,
+    pub is_done: bool,
     /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,
 }
 
 impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
-    /// Acrobot `index`, if there is one.
-    #[must_use]
-    pub fn member(&self, index: usize) -> Option<Member<A>> {
-        let block = self.block_of(index).ok()?;
-        let (elapsed_steps, ended) = block.progress(index % N)?;
-        Some(Member {
-            params: self.params_of(index)?,
-            state: block.state(index % N)?,
-            elapsed_steps,
-            ended,
-            rng: self.storage.slices().generators.get(index)?.clone(),
-        })
+    /// Acrobot `index`, or [`Error::NoSuchIndex`].
+    #[inline(never)] // saves flash: each call would copy the fields
+    pub fn member(&self, index: usize) -> Result<Member<A>, Error> {
+        let (block, rng) = self.block_and_rng(index)?;
+        let (elapsed_steps, is_done) = block.progress(index % N);
+        let (params, state) = (self.params(index)?, block.state(index % N));
+        Ok(Member { params, state, elapsed_steps, is_done, rng: rng.clone() })
     }
 
     /// Replaces acrobot `index` by `member`. [`Autoreset::SameStep`](super::Autoreset) resets
@@ -47,16 +42,13 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     ///
     /// # Errors
     ///
-    /// Those of [`set_state`](Self::set_state_of) and [`set_params`](Self::set_params), and
-    /// [`Error::SharedParams`] for parameters other than those that all acrobots of this batch
-    /// share.
+    /// Those of [`set_state`](Self::set_state) and of [`set_params`](Self::set_params), which fails
+    /// with [`Error::SharedParams`] only for other parameters than those that all acrobots share.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
-        self.check_params(&member.params)?;
         member.state.validate()?;
-        self.block_of(index)?;
         match &self.settings.shared {
-            Some(model) if model.params == member.params => {}
-            _ => self.set_params_of(index, member.params)?,
+            Some(model) if model.params == member.params => _ = self.block_and_rng(index)?,
+            _ => self.set_params(index, member.params)?,
         }
         let SlicesMut { blocks, generators, lane_params, draws } = self.storage.slices_mut();
         let mut generators = generators.get_mut(index - index % N..);
@@ -64,10 +56,10 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         if let (Some(block), Some(rng)) = (blocks.get_mut(index / N), generators.get_mut(index % N))
         {
             block.set_state(index % N, member.state);
-            block.set_progress(index % N, member.elapsed_steps, member.ended);
+            block.set_progress(index % N, member.elapsed_steps, member.is_done);
             *rng = member.rng;
             let own = lane_params.get_mut(index / N).zip(draws.as_deref());
-            block.reset_ended(&self.settings, generators, own);
+            block.reset_done(&self.settings, generators, own);
         }
         Ok(())
     }

@@ -9,15 +9,14 @@ use crate::physics::{Params, check_params, model};
 use crate::task::{Draws, Task};
 
 impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
-    /// The parameters of acrobot `index`, if there is one.
-    #[must_use]
-    pub fn params_of(&self, index: usize) -> Option<Params<A::Scalar>> {
-        let slices = self.storage.slices();
-        slices.generators.get(index)?;
-        match &self.settings.shared {
-            Some(model) => Some(model.params),
-            None => Some(slices.lane_params.get(index / N)?.get(index % N)),
+    /// The parameters of acrobot `index`, or [`Error::NoSuchIndex`].
+    pub fn params(&self, index: usize) -> Result<Params<A::Scalar>, Error> {
+        self.block_and_rng(index)?;
+        if let Some(model) = &self.settings.shared {
+            return Ok(model.params);
         }
+        let own = self.storage.slices().lane_params.get(index / N).ok_or(Error::SharedParams)?;
+        Ok(own.get(index % N))
     }
 
     /// Whether each acrobot has its own parameters. Otherwise all share theirs.
@@ -28,7 +27,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     /// Sets the parameters of all acrobots for the next steps, with the errors of
     /// [`Pendulum::set_params`](crate::physics::Pendulum::set_params).
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+    pub fn set_all_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         self.check_params(&params)?;
         let model = model::<A>(params);
         let lane_params = self.storage.slices_mut().lane_params;
@@ -43,11 +42,11 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     ///
     /// # Errors
     ///
-    /// Those of [`set_params`](Self::set_params), [`Error::NoSuchIndex`], and
+    /// Those of [`set_all_params`](Self::set_all_params), [`Error::NoSuchIndex`], and
     /// [`Error::SharedParams`] without memory for [`LaneParams`].
-    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
+    pub fn set_params(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
         self.check_params(&params)?;
-        self.block_of(index)?;
+        self.block_and_rng(index)?;
         let lane_params = self.storage.slices_mut().lane_params;
         let own = lane_params.get_mut(index / N).ok_or(Error::SharedParams)?;
         own.set(index % N, params);
@@ -71,12 +70,12 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     ///
     /// # Errors
     ///
-    /// Those of [`set_params`](Self::set_params), for what the draws can make of the parameters of
-    /// each acrobot, and [`Error::SharedParams`] without memory for [`LaneParams`].
+    /// Those of [`set_all_params`](Self::set_all_params), for what the draws can make of the
+    /// parameters of each acrobot, and [`Error::SharedParams`] without memory for [`LaneParams`].
     pub fn set_draws(&mut self, draws: Draws<A::Scalar>) -> Result<(), Error> {
         let count = if self.has_own_params() { self.len() } else { 1 };
-        for params in (0..count).filter_map(|index| self.params_of(index)) {
-            draws.check::<A>(&params)?;
+        for index in 0..count {
+            draws.check::<A>(&self.params(index)?)?;
         }
         match (&self.settings.shared, self.storage.slices_mut().draws) {
             (None, Some(own)) => *own = draws,

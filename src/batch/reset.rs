@@ -5,6 +5,7 @@ use super::storage::Storage;
 use super::{Batch, each_block};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
+use crate::numpy::SeedSequence;
 use crate::physics::State;
 use crate::task::{ResetOptions, Task};
 
@@ -15,8 +16,8 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     }
 
     /// Seeds acrobot `i` with the `i`-th child of `seed`, and resets all.
-    pub fn reset_with_seed(&mut self, seed: u64) {
-        self.reset_with(seed.into());
+    pub fn reset_with_seed(&mut self, seed: impl Into<SeedSequence>) {
+        self.reset_with(seed.into().into());
     }
 
     /// Gymnasium's `reset(seed=…, options=…)` for all acrobots. A seed seeds acrobot `i` with the

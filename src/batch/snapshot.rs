@@ -16,7 +16,6 @@ use super::storage::Storage;
 use super::vec_batch::VecBatch;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
-use crate::numpy::SeedSequence;
 use crate::physics::Params;
 use crate::snapshot::Header;
 use crate::task::{Draw, Draws, ResetBounds, Task};
@@ -47,7 +46,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Serialize for Bat
             own_params: self.has_own_params(),
             draws: *self.draws().params(),
         })?;
-        for member in (0..self.len()).filter_map(|index| self.member(index)) {
+        for member in (0..self.len()).filter_map(|index| self.member(index).ok()) {
             records.serialize_element(&member)?;
         }
         records.end()
@@ -67,7 +66,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     where
         D: Deserializer<'de>,
     {
-        let mut batch = Self::new(SeedSequence::new(0), storage).map_err(D::Error::custom)?;
+        let mut batch = Self::new(0, storage).map_err(D::Error::custom)?;
         let mut index = 0;
         let settings = read(deserializer, |member| {
             index += 1;
@@ -83,7 +82,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
             return check_length("members", index + 1, self.len());
         }
         if index == 0 {
-            self.set_params(member.params)?;
+            self.set_all_params(member.params)?;
         }
         self.set_member(index, member)
     }
@@ -117,8 +116,8 @@ impl<'de, A: Arithmetic, T: Task, const N: usize> serde::Deserialize<'de> for Ve
             Ok(())
         })?;
         let assemble = || {
-            let (seed, len) = (SeedSequence::new(0), members.len());
-            let mut batch = Self::new(seed, len)?;
+            let len = members.len();
+            let mut batch = Self::new(0, len)?;
             if settings.own_params {
                 batch.own_params()?;
             }

@@ -2,14 +2,51 @@
 
 use super::block::Block;
 use super::lane_params::LaneParams;
-use crate::arithmetic::Arithmetic;
+use crate::arithmetic::{Arithmetic, Real};
 use crate::numpy::Pcg64;
 use crate::task::Draws;
 
-/// The memory of a [`Batch`](super::Batch): arrays, slices or `Vec`s, as `(blocks, generators)`
-/// where acrobots share their parameters, and `(blocks, generators, lane_params, draws)` where each
-/// has its own, from which resets draw. Their lengths must never change. For 50 acrobots, 16 in a
-/// block: `([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50], [LaneParams::default(); 4], Draws::NONE)`.
+/// The memory of a [`Batch`](super::Batch): arrays, slices or `Vec`s, whose lengths must never
+/// change. For 50 acrobots, 16 in a block:
+///
+/// ```
+/// use acrobot::Fast;
+/// use acrobot::batch::{Batch, BatchMemory, Block, LaneParams, OwnParams};
+/// use acrobot::numpy::Pcg64;
+///
+/// let (blocks, generators) = ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50]);
+/// let own = OwnParams::new([LaneParams::default(); 4]);
+/// let batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own })?;
+/// assert!(batch.has_own_params());
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct BatchMemory<B, G, O = ()> {
+    /// A [`Block`] for each `N` acrobots.
+    pub blocks: B,
+    /// A generator for each acrobot.
+    pub generators: G,
+    /// `()` where acrobots share their parameters, or [`OwnParams`] where each has its own.
+    pub own: O,
+}
+
+/// The memory for the parameters of each acrobot, and for what resets draw of them.
+#[derive(Clone, Debug)]
+pub struct OwnParams<P, S = f32> {
+    pub(super) lane_params: P,
+    draws: Draws<S>,
+}
+
+impl<P, S: Real> OwnParams<P, S> {
+    /// Memory with a [`LaneParams`] for each block, or without any: then acrobots share their
+    /// parameters. A new batch has the default ones and [draws](super::Batch::set_draws) none.
+    #[must_use]
+    pub const fn new(lane_params: P) -> Self {
+        Self { lane_params, draws: Draws::NONE }
+    }
+}
+
+/// A [`BatchMemory`].
 pub trait Storage<A: Arithmetic, const N: usize> {
     #[doc(hidden)]
     fn slices(&self) -> Slices<'_, A, N>;
@@ -38,7 +75,7 @@ pub struct SlicesMut<'a, A: Arithmetic, const N: usize> {
     pub draws: Option<&'a mut Draws<A::Scalar>>,
 }
 
-impl<A, B, G, const N: usize> Storage<A, N> for (B, G)
+impl<A, B, G, const N: usize> Storage<A, N> for BatchMemory<B, G>
 where
     A: Arithmetic,
     B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
@@ -46,8 +83,8 @@ where
 {
     fn slices(&self) -> Slices<'_, A, N> {
         Slices {
-            blocks: self.0.as_ref(),
-            generators: self.1.as_ref(),
+            blocks: self.blocks.as_ref(),
+            generators: self.generators.as_ref(),
             lane_params: &[],
             draws: None,
         }
@@ -55,15 +92,15 @@ where
 
     fn slices_mut(&mut self) -> SlicesMut<'_, A, N> {
         SlicesMut {
-            blocks: self.0.as_mut(),
-            generators: self.1.as_mut(),
+            blocks: self.blocks.as_mut(),
+            generators: self.generators.as_mut(),
             lane_params: &mut [],
             draws: None,
         }
     }
 }
 
-impl<A, B, G, P, const N: usize> Storage<A, N> for (B, G, P, Draws<A::Scalar>)
+impl<A, B, G, P, const N: usize> Storage<A, N> for BatchMemory<B, G, OwnParams<P, A::Scalar>>
 where
     A: Arithmetic,
     B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
@@ -72,19 +109,19 @@ where
 {
     fn slices(&self) -> Slices<'_, A, N> {
         Slices {
-            blocks: self.0.as_ref(),
-            generators: self.1.as_ref(),
-            lane_params: self.2.as_ref(),
-            draws: Some(&self.3),
+            blocks: self.blocks.as_ref(),
+            generators: self.generators.as_ref(),
+            lane_params: self.own.lane_params.as_ref(),
+            draws: Some(&self.own.draws),
         }
     }
 
     fn slices_mut(&mut self) -> SlicesMut<'_, A, N> {
         SlicesMut {
-            blocks: self.0.as_mut(),
-            generators: self.1.as_mut(),
-            lane_params: self.2.as_mut(),
-            draws: Some(&mut self.3),
+            blocks: self.blocks.as_mut(),
+            generators: self.generators.as_mut(),
+            lane_params: self.own.lane_params.as_mut(),
+            draws: Some(&mut self.own.draws),
         }
     }
 }

@@ -8,13 +8,15 @@ use super::block::Block;
 use super::buffers::StepBuffers;
 use super::inputs::Input;
 use super::lane_params::LaneParams;
+use super::storage::{BatchMemory, OwnParams};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::task::{Draws, Gymnasium, Observation, Task};
+use crate::task::{Gymnasium, Observation, Task};
 
-type Memory<A, const N: usize> =
-    (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>, Draws<<A as Arithmetic>::Scalar>);
+type Own<A, const N: usize> = OwnParams<Vec<LaneParams<A, N>>, <A as Arithmetic>::Scalar>;
+
+type Memory<A, const N: usize> = BatchMemory<Vec<Block<A, N>>, Vec<Pcg64>, Own<A, N>>;
 
 type InVecs<A, T, const N: usize> = Batch<A, Memory<A, N>, T, N>;
 
@@ -65,13 +67,14 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     /// # Errors
     ///
     /// [`Error::EmptyBatch`] for a `len` of 0, and [`Error::OutOfMemory`].
-    pub fn new(seed: SeedSequence, len: usize) -> Result<Self, Error> {
+    pub fn new(seed: impl Into<SeedSequence>, len: usize) -> Result<Self, Error> {
         let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
-        let storage = (blocks, fill(Pcg64::UNSEEDED, len, len)?, Vec::new(), Draws::NONE);
-        Ok(Self { batch: Batch::new(seed, storage)?, results: StepResults::new(len)? })
+        let generators = fill(Pcg64::UNSEEDED, len, len)?;
+        let memory = BatchMemory { blocks, generators, own: OwnParams::new(Vec::new()) };
+        Ok(Self { batch: Batch::new(seed, memory)?, results: StepResults::new(len)? })
     }
 
-    /// Allocates parameters for each acrobot, which [`set_params_of`](Batch::set_params_of) and
+    /// Allocates parameters for each acrobot, which [`set_params`](Batch::set_params) and
     /// [`set_draws`](Batch::set_draws) need. They begin as those that all share.
     ///
     /// # Errors
@@ -80,7 +83,8 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     pub fn own_params(&mut self) -> Result<(), Error> {
         if let Some(model) = &self.batch.settings.shared {
             let len = self.batch.len();
-            self.batch.storage.2 = fill(LaneParams::shared(model), len.div_ceil(N), len)?;
+            self.batch.storage.own.lane_params =
+                fill(LaneParams::shared(model), len.div_ceil(N), len)?;
             self.batch.settings.shared = None;
         }
         Ok(())

@@ -53,7 +53,7 @@ pub trait Numbers<S: Real>:
 
     /// Applies `f` to each number. Its results are the numbers of two.
     #[inline(always)]
-    fn map2(self, mut f: impl FnMut(S) -> (S, S)) -> (Self, Self) {
+    fn map_unzip(self, mut f: impl FnMut(S) -> (S, S)) -> (Self, Self) {
         self.zip3(self, self, |x, _, _| f(x))
     }
 
@@ -61,30 +61,30 @@ pub trait Numbers<S: Real>:
     fn zip3(self, second: Self, third: Self, f: impl FnMut(S, S, S) -> (S, S)) -> (Self, Self);
 
     /// Whether |x| ≤ `limit` for all numbers x; false for NaN.
-    fn all_within(self, limit: Self) -> bool;
+    fn all_abs_le(self, limit: Self) -> bool;
 
-    /// `inside` where |x| ≤ `limit`, `outside` elsewhere and for NaN.
+    /// `yes` where |x| ≤ `limit`, `no` elsewhere and for NaN.
     #[inline(always)]
-    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self {
-        let select = |x: S, inside, outside| if x.abs() <= limit { inside } else { outside };
-        let (selected, _) = self.zip3(inside, outside, |x, y, z| (select(x, y, z), z));
+    fn select_abs_le(self, limit: S, yes: Self, no: Self) -> Self {
+        let select = |x: S, yes, no| if x.abs() <= limit { yes } else { no };
+        let (selected, _) = self.zip3(yes, no, |x, y, z| (select(x, y, z), z));
         selected
     }
 
-    /// Which numbers are above `limit`.
-    fn above(self, limit: S) -> Self::Mask;
+    /// Which numbers are above the other one: false for NaN.
+    fn simd_gt(self, other: Self) -> Self::Mask;
 
     /// Each number rounded to `f32`.
     fn to_f32(self) -> Self::Single;
 
     /// `yes` where `mask` is true, `no` elsewhere.
-    fn either(mask: Self::Mask, yes: S, no: S) -> Self;
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
-    /// Each number clamped to \[−`limit`, `limit`\]; NaN stays NaN.
+    /// Each number clamped to \[`min`, `max`\]; NaN stays NaN.
     #[inline(always)]
-    fn saturate(self, limit: Self) -> Self {
-        self.zip(limit, |x, limit| if x > limit { limit } else { x })
-            .zip(limit, |x, limit| if x < -limit { -limit } else { x })
+    fn simd_clamp(self, min: Self, max: Self) -> Self {
+        self.zip(max, |x, max| if x > max { max } else { x })
+            .zip(min, |x, min| if x < min { min } else { x })
     }
 }
 
@@ -120,13 +120,13 @@ impl<S: Real> Numbers<S> for S {
     }
 
     #[inline(always)]
-    fn all_within(self, limit: S) -> bool {
+    fn all_abs_le(self, limit: S) -> bool {
         self.abs() <= limit
     }
 
     #[inline(always)]
-    fn above(self, limit: S) -> bool {
-        self > limit
+    fn simd_gt(self, other: S) -> bool {
+        self > other
     }
 
     #[inline(always)]
@@ -135,7 +135,7 @@ impl<S: Real> Numbers<S> for S {
     }
 
     #[inline(always)]
-    fn either(mask: bool, yes: S, no: S) -> S {
+    fn select(mask: bool, yes: S, no: S) -> S {
         if mask { yes } else { no }
     }
 }
@@ -216,18 +216,18 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     }
 
     #[inline(always)]
-    fn all_within(self, limit: Self) -> bool {
+    fn all_abs_le(self, limit: Self) -> bool {
         let pairs = self.0.iter().zip(&limit.0);
         pairs.fold(true, |all, (x, limit)| all & (x.abs() <= *limit))
     }
 
     #[inline(always)]
-    fn above(self, limit: S) -> [bool; N] {
-        let mut above = [false; N];
-        for (above, x) in above.iter_mut().zip(self.0) {
-            *above = x > limit;
+    fn simd_gt(self, other: Self) -> [bool; N] {
+        let mut mask = [false; N];
+        for ((mask, x), y) in mask.iter_mut().zip(self.0).zip(other.0) {
+            *mask = x > y;
         }
-        above
+        mask
     }
 
     #[inline(always)]
@@ -240,11 +240,11 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     }
 
     #[inline(always)]
-    fn either(mask: [bool; N], yes: S, no: S) -> Self {
-        let mut numbers = [no; N];
-        for (number, mask) in numbers.iter_mut().zip(mask) {
+    fn select(mask: [bool; N], yes: Self, no: Self) -> Self {
+        let mut numbers = no;
+        for (((number, mask), yes), no) in numbers.0.iter_mut().zip(mask).zip(yes.0).zip(no.0) {
             *number = if mask { yes } else { no };
         }
-        Self(numbers)
+        numbers
     }
 }

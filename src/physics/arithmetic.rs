@@ -33,7 +33,7 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// |x| ≤ 2¹⁹ rad. Beyond, any result is valid, even NaN. Steps call it for speed.
     #[inline(always)]
     fn sin_cos_near<V: Numbers<Self::Scalar>>(x: V) -> (V, V) {
-        x.map2(Self::sin_cos)
+        x.map_unzip(Self::sin_cos)
     }
 
     /// The cosines of [`sin_cos_near`](Self::sin_cos_near). Only [`Form::Gymnasium`] calls it.

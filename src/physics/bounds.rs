@@ -23,7 +23,8 @@ pub(super) fn wrap_each<S: Real, V: Numbers<S>>(x: V) -> V {
     let turned = x - turns.map(S::round_small) * V::splat(S::TAU);
     // The bound is for angles whose neighbours are more than a turn away. An angle within ±π does
     // not change, even where its turns round to ±1.
-    x.zip(turned.saturate(V::splat(S::PI)), |x, turned| if x.abs() <= S::PI { x } else { turned })
+    let turned = turned.simd_clamp(V::splat(-S::PI), V::splat(S::PI));
+    x.zip(turned, |x, turned| if x.abs() <= S::PI { x } else { turned })
 }
 
 /// `x` clamped to \[−`limit`, `limit`\], for a `limit` of at least 0. NaN stays NaN, and a
@@ -31,5 +32,5 @@ pub(super) fn wrap_each<S: Real, V: Numbers<S>>(x: V) -> V {
 #[must_use]
 #[inline]
 pub fn saturate<S: Real>(x: S, limit: S) -> S {
-    Numbers::saturate(x, limit)
+    x.simd_clamp(-limit, limit)
 }

@@ -38,7 +38,7 @@ pub(crate) fn coulomb_friction<A: Arithmetic, V: Numbers<A::Scalar>>(
     dtheta: V,
 ) -> (V, V) {
     let one = V::splat(A::Scalar::ONE);
-    let x = (dtheta * model.constants.inverse_width).saturate(one);
+    let x = (dtheta * model.constants.inverse_width).simd_clamp(-one, one);
     let rest = V::splat(A::Scalar::HALF) * (one - x * x);
     (x + x * rest, (rest + (rest + rest)) * model.constants.inverse_width)
 }

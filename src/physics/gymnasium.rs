@@ -51,7 +51,7 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     }
     let driven = torque + d2 / d1 * phi1;
     let centrifugal = coupling * square(dtheta1) * sin2;
-    let driven = nips.select_within(A::Scalar::ZERO, driven - centrifugal, driven);
+    let driven = nips.select_abs_le(A::Scalar::ZERO, driven - centrifugal, driven);
     let ddtheta2 = (driven - phi2) / (link2 - square(d2) / d1);
     let ddtheta1 = -(d2 * ddtheta2 + phi1) / d1;
     [dtheta1, dtheta2, ddtheta1, ddtheta2]
@@ -61,7 +61,7 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
 /// never returns, it takes the remainder.
 #[inline(always)]
 pub(super) fn wrap<S: Real, V: Numbers<S>>(x: V) -> V {
-    if !V::IS_ONE && x.all_within(V::splat(S::PI)) {
+    if !V::IS_ONE && x.all_abs_le(V::splat(S::PI)) {
         return x;
     }
     x.map(|mut x| {
@@ -88,5 +88,5 @@ fn wrap_by_remainder<S: Real>(x: S) -> S {
     } else {
         S::ZERO
     };
-    (x + turn).saturate(S::PI)
+    (x + turn).simd_clamp(-S::PI, S::PI)
 }

@@ -36,10 +36,10 @@ fn is_within_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     let pi = V::splat(A::Scalar::PI);
     // Read before the comparisons: otherwise a step takes 13 instructions more on x86-64.
     let (limit1, limit2) = (model.params.max_velocity1, model.params.max_velocity2);
-    theta1.all_within(pi)
-        && theta2.all_within(pi)
-        && dtheta1.all_within(limit1)
-        && dtheta2.all_within(limit2)
+    theta1.all_abs_le(pi)
+        && theta2.all_abs_le(pi)
+        && dtheta1.all_abs_le(limit1)
+        && dtheta2.all_abs_le(limit2)
 }
 
 #[inline(never)]
@@ -63,15 +63,16 @@ fn enforce_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     let [theta1, theta2, dtheta1, dtheta2] = *y;
     // 0 times a number that is not finite is NaN.
     let zeros = ((theta1 * zero + theta2 * zero) + dtheta1 * zero) + dtheta2 * zero;
-    if !zeros.all_within(zero) {
-        let or = |x, otherwise| zeros.select_within(A::Scalar::ZERO, x, otherwise);
+    if !zeros.all_abs_le(zero) {
+        let or = |x, otherwise| zeros.select_abs_le(A::Scalar::ZERO, x, otherwise);
         *y = [or(theta1, before1), or(theta2, before2), or(dtheta1, zero), or(dtheta2, zero)];
     }
     let [theta1, theta2, dtheta1, dtheta2] = *y;
+    let (limit1, limit2) = (model.params.max_velocity1, model.params.max_velocity2);
     *y = [
         wrap::<A, V>(theta1),
         wrap::<A, V>(theta2),
-        dtheta1.saturate(model.params.max_velocity1),
-        dtheta2.saturate(model.params.max_velocity2),
+        dtheta1.simd_clamp(-limit1, limit1),
+        dtheta2.simd_clamp(-limit2, limit2),
     ];
 }

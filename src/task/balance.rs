@@ -7,7 +7,7 @@ use rand_core::Rng;
 
 use super::gymnasium::Gymnasium;
 use super::reset_bounds::ResetBounds;
-use super::{Seen, Task};
+use super::{Pose, Task};
 use crate::arithmetic::{Arithmetic, Numbers, Real};
 use crate::physics::{Params, State};
 
@@ -34,8 +34,8 @@ impl Task for Balance {
     }
 
     #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
-        Gymnasium.observe::<A, V>(seen)
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 6] {
+        Gymnasium.observe::<A, V>(pose)
     }
 
     fn observation_high(&self, params: &Params<f32>) -> [f32; 6] {
@@ -46,15 +46,15 @@ impl Task for Balance {
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        seen: &Seen<V>,
+        pose: &Pose<V>,
         _: &Params<V>,
         _: V,
         _: V::Mask,
     ) -> V::Single {
         let number = |x| V::splat(Real::from_f64(x));
-        let [(_, cos1), (_, cos_sum)] = seen.directions();
+        let [(_, cos1), (_, cos_sum)] = pose.directions();
         // A sum of two products can be beyond 1 by a rounding.
-        let height = -cos1 - cos_sum.saturate(number(1.0));
+        let height = -cos1 - cos_sum.simd_clamp(number(-1.0), number(1.0));
         (number(0.5) + number(0.25) * height).to_f32()
     }
 }

@@ -4,7 +4,7 @@ use core::num::NonZeroU32;
 
 use rand_core::Rng;
 
-use super::{Seen, Task};
+use super::{Pose, Task};
 use crate::arithmetic::{Arithmetic, Numbers, Real};
 use crate::math::SinCos;
 use crate::numpy::uniform;
@@ -23,9 +23,9 @@ pub(crate) fn step<A: Arithmetic, T: Task, V: Numbers<A::Scalar>>(
     task: &T,
 ) -> Outcome<A::Scalar, V> {
     advance::<A, V>(model, y, sin_cos, torque);
-    let seen = Seen { state: (*y).into(), sin_cos: *sin_cos };
-    let ended = task.ended::<A, V>(&seen);
-    (task.reward::<A, V>(&seen, &model.params, torque, ended), ended)
+    let pose = Pose { state: (*y).into(), sin_cos: *sin_cos };
+    let terminated = task.terminated::<A, V>(&pose);
+    (task.reward::<A, V>(&pose, &model.params, torque, terminated), terminated)
 }
 
 /// Adds a draw from \[−noise, noise) to each torque with noise, from its generator. One without
@@ -36,7 +36,7 @@ pub(crate) fn disturb<'a, S: Real, V: Numbers<S>, R: Rng + 'a>(
     noise: V,
     generators: impl Iterator<Item = Option<&'a mut R>>,
 ) -> V {
-    if noise.all_within(V::splat(S::ZERO)) {
+    if noise.all_abs_le(V::splat(S::ZERO)) {
         return torque;
     }
     draw(torque, noise, generators)

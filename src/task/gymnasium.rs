@@ -3,7 +3,7 @@
 use core::f32::consts::PI;
 use core::num::NonZeroU32;
 
-use super::{Seen, Task};
+use super::{Pose, Task};
 use crate::arithmetic::{Arithmetic, Form, Numbers, Real};
 use crate::math::sealed::Sealed;
 use crate::physics::Params;
@@ -23,9 +23,9 @@ impl Task for Gymnasium {
     type Observation = [f32; 6];
 
     #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
-        let [(sin1, cos1), (sin2, cos2)] = seen.sin_cos;
-        [cos1, sin1, cos2, sin2, seen.state.dtheta1, seen.state.dtheta2]
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 6] {
+        let [(sin1, cos1), (sin2, cos2)] = pose.sin_cos;
+        [cos1, sin1, cos2, sin2, pose.state.dtheta1, pose.state.dtheta2]
     }
 
     /// 1, 1, 1, 1, and the largest velocities, at least 0.1 rad/s for the initial states.
@@ -36,21 +36,22 @@ impl Task for Gymnasium {
 
     /// Whether −cos θ1 − cos(θ1 + θ2) > 1, whatever the lengths of the links.
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
-        let [(sin1, cos1), (sin2, cos2)] = seen.sin_cos;
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> V::Mask {
+        let [(sin1, cos1), (sin2, cos2)] = pose.sin_cos;
+        let one = V::splat(A::Scalar::ONE);
         let cos_sum = match A::FORM {
             Form::Lean => cos1 * cos2 - sin1 * sin2,
             Form::Gymnasium => {
                 // Without a positive −cos θ1 the sum cannot exceed 1, and needs no second cosine.
                 let zero = V::splat(A::Scalar::ZERO);
                 let lowest = cos1.map(|x| if x < A::Scalar::ZERO { x } else { A::Scalar::ZERO });
-                if lowest.all_within(zero) {
-                    return zero.above(A::Scalar::ONE);
+                if lowest.all_abs_le(zero) {
+                    return zero.simd_gt(one);
                 }
-                A::cos_near(seen.state.theta2 + seen.state.theta1)
+                A::cos_near(pose.state.theta2 + pose.state.theta1)
             }
         };
-        (-cos1 - cos_sum).above(A::Scalar::ONE)
+        (-cos1 - cos_sum).simd_gt(one)
     }
 }
 
@@ -74,8 +75,8 @@ impl Task for GymnasiumV0 {
     type Observation = [f32; 4];
 
     #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 4] {
-        seen.state.into()
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 4] {
+        pose.state.into()
     }
 
     /// π, π, and the largest velocities of [`Gymnasium`].
@@ -85,7 +86,7 @@ impl Task for GymnasiumV0 {
     }
 
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
-        Gymnasium.ended::<A, V>(seen)
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> V::Mask {
+        Gymnasium.terminated::<A, V>(pose)
     }
 }

@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 use rand_core::Rng;
 
 use super::reset_bounds::ResetBounds;
-use super::{Seen, Task};
+use super::{Pose, Task};
 use crate::arithmetic::{Arithmetic, Numbers, Real};
 use crate::math::sealed::Sealed;
 use crate::numpy::uniform;
@@ -38,12 +38,12 @@ impl Task for Swingup {
     }
 
     #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
-        let [(sin1, cos1), (sin_sum, cos_sum)] = seen.directions();
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 6] {
+        let [(sin1, cos1), (sin_sum, cos_sum)] = pose.directions();
         // A sum of two products can be beyond 1 by a rounding.
         let one = V::splat(A::Scalar::ONE);
-        let [sin_sum, cos_sum] = [sin_sum, cos_sum].map(|x| x.saturate(one));
-        [-sin1, -sin_sum, -cos1, -cos_sum, seen.state.dtheta1, seen.state.dtheta2]
+        let [sin_sum, cos_sum] = [sin_sum, cos_sum].map(|x| x.simd_clamp(-one, one));
+        [-sin1, -sin_sum, -cos1, -cos_sum, pose.state.dtheta1, pose.state.dtheta2]
     }
 
     /// 1, 1, 1, 1, and the largest velocities.
@@ -55,7 +55,7 @@ impl Task for Swingup {
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        seen: &Seen<V>,
+        pose: &Pose<V>,
         params: &Params<V>,
         _: V,
         _: V::Mask,
@@ -64,13 +64,13 @@ impl Task for Swingup {
         // Up to 0.1 mm beyond, the nearest `f32` would be 1.
         const BELOW_1: f64 = 1.0_f32.next_down() as f64;
         let number = |x| V::splat(Real::from_f64(x));
-        let [_, [x, y]] = seen.positions(params);
+        let [_, [x, y]] = pose.positions(params);
         let below = number(2.0) - y;
         let distance = (x * x + below * below).map(Real::sqrt);
         let beyond = distance - number(RADIUS);
         let outside = exp2(beyond * beyond * number(-core::f64::consts::LOG2_10));
-        let outside = outside.saturate(number(BELOW_1));
-        distance.select_within(Real::from_f64(RADIUS), number(1.0), outside).to_f32()
+        let outside = outside.simd_clamp(number(0.0), number(BELOW_1));
+        distance.select_abs_le(Real::from_f64(RADIUS), number(1.0), outside).to_f32()
     }
 }
 
@@ -79,7 +79,7 @@ impl Task for Swingup {
 fn exp2<S: Real, V: Numbers<S>>(x: V) -> V {
     const LEAST: f64 = -100.0;
     let number = |x| V::splat(S::from_f64(x));
-    let x = x.select_within(S::from_f64(-LEAST), x, number(LEAST));
+    let x = x.select_abs_le(S::from_f64(-LEAST), x, number(LEAST));
     let whole = x.map(S::round_small);
     // The Taylor series of e^y, |y| ≤ ln 2 / 2. Its first omitted term is at most 6e-9.
     let y = (x - whole) * number(core::f64::consts::LN_2);

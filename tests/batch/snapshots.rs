@@ -3,15 +3,15 @@
 
 use std::fmt::Debug;
 
-use acrobot::batch::{Batch, Block, LaneParams, VecBatch};
-use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::task::{Draws, Gymnasium};
+use acrobot::batch::{Batch, BatchMemory, Block, LaneParams, OwnParams, VecBatch};
+use acrobot::numpy::Pcg64;
+use acrobot::task::Gymnasium;
 use acrobot::{Acrobot, Fast};
 use common::draws;
 use serde_json::json;
 
 fn three(own_params: bool) -> VecBatch<Fast> {
-    let mut batch = VecBatch::new(SeedSequence::new(1), 3).unwrap();
+    let mut batch = VecBatch::new(1, 3).unwrap();
     if own_params {
         batch.own_params().unwrap();
     }
@@ -37,8 +37,9 @@ fn load(json: &str) -> String {
 
 /// Loads into memory for `LEN` acrobots in one block, with this many elements of parameters.
 fn load_into<const LEN: usize>(json: &str, own: usize) -> String {
-    let own = vec![LaneParams::default(); own];
-    let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; LEN], own, Draws::NONE);
+    let (blocks, generators) = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; LEN]);
+    let own = OwnParams::new(vec![LaneParams::default(); own]);
+    let memory = BatchMemory { blocks, generators, own };
     let json = &mut serde_json::Deserializer::from_str(json);
     error(Batch::<Fast, _>::from_snapshot(memory, json))
 }
@@ -89,8 +90,9 @@ fn invalid_snapshots_are_rejected() {
 fn snapshots_load_into_other_memory() {
     for (stored, own) in [(three(false), 0), (three_drawn(), 3)] {
         let bytes = postcard::to_stdvec(&stored).unwrap();
-        let own = vec![LaneParams::default(); own];
-        let memory = ([Block::EMPTY; 3], [Pcg64::UNSEEDED; 3], own, Draws::NONE);
+        let (blocks, generators) = ([Block::EMPTY; 3], [Pcg64::UNSEEDED; 3]);
+        let own = OwnParams::new(vec![LaneParams::default(); own]);
+        let memory = BatchMemory { blocks, generators, own };
         let from = &mut postcard::Deserializer::from_bytes(&bytes);
         let narrow = Batch::<Fast, _, Gymnasium, 1>::from_snapshot(memory, from).unwrap();
         assert_eq!(postcard::to_stdvec(&narrow).unwrap(), bytes);

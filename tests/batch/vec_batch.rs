@@ -1,14 +1,13 @@
 //! The batch that owns its memory: another batch in its place, and members of one in another.
 
 use acrobot::batch::{Batch, VecBatch};
-use acrobot::numpy::SeedSequence;
 use acrobot::task::{Draw, Draws};
 use acrobot::{Acrobot, Fast, Params};
 
 /// `DerefMut` gives access to the batch inside, so a batch of another length can replace it.
 #[test]
 fn replaced_batches_of_other_lengths_have_their_own_results() {
-    let new = |len| VecBatch::<Fast>::new(SeedSequence::new(len as u64), len).unwrap();
+    let new = |len| VecBatch::<Fast>::new(len as u64, len).unwrap();
     let (mut first, mut second) = (new(5), new(40));
     std::mem::swap::<Batch<_, _, _>>(&mut first, &mut second);
     for (swapped, expected) in [(&mut first, &mut new(40)), (&mut second, &mut new(5))] {
@@ -23,7 +22,7 @@ fn replaced_batches_of_other_lengths_have_their_own_results() {
 #[test]
 fn a_batch_that_does_not_fit_into_memory_is_rejected() {
     let len = usize::MAX / 2;
-    let error = VecBatch::<Fast>::new(SeedSequence::new(0), len).unwrap_err().to_string();
+    let error = VecBatch::<Fast>::new(0, len).unwrap_err().to_string();
     assert_eq!(error, format!("all acrobots must fit into memory, got {len}"));
 }
 
@@ -37,20 +36,20 @@ fn parameters_are_drawn_after_the_initial_state_in_the_order_of_the_fields() {
         ..Draws::FIXED
     });
     let draws = draws.unwrap();
-    let mut batch = VecBatch::<Fast>::new(SeedSequence::new(0), 3).unwrap();
+    let mut batch = VecBatch::<Fast>::new(0, 3).unwrap();
     batch.own_params().unwrap();
     batch.set_draws(draws).unwrap();
-    batch.reset_with(SeedSequence::new(42).into());
+    batch.reset_with_seed(42);
     // Without draws the states are the same.
-    let plain = VecBatch::<Fast>::new(SeedSequence::new(42), 3).unwrap();
+    let plain = VecBatch::<Fast>::new(42, 3).unwrap();
     for row in include_str!("../data/draws.csv").lines().skip(1) {
         let (seed, rest) = row.split_once(',').unwrap();
         let (child, numbers) = rest.split_once(',').unwrap();
         let (params, state) = if let Ok(child) = child.parse() {
-            assert_eq!(plain.state_of(child), batch.state_of(child));
-            (batch.params_of(child).unwrap(), batch.state_of(child).unwrap())
+            assert_eq!(plain.state(child), batch.state(child));
+            (batch.params(child).unwrap(), batch.state(child).unwrap())
         } else {
-            let mut acrobot = Acrobot::<Fast>::new(seed.parse().unwrap());
+            let mut acrobot = Acrobot::<Fast>::new(seed.parse::<u64>().unwrap());
             acrobot.draw_params(&draws).unwrap();
             (*acrobot.params(), acrobot.state())
         };

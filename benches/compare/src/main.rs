@@ -64,9 +64,9 @@ fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Implementation {
 }
 
 fn fast() -> Implementation {
-    let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(0));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Fast>::new(0));
     alone(move |action| {
-        let done = black_box(acrobot.step(Action::ALL[usize::from(action)])).done();
+        let done = black_box(acrobot.step(Action::ALL[usize::from(action)])).is_done();
         if done {
             acrobot.reset();
         }

@@ -579,12 +579,12 @@ acrobot_status_t acrobot_batch_set_max_steps(acrobot_batch_t *batch,
     uint32_t max_steps,
     acrobot_error_t *error);
 
-acrobot_status_t acrobot_batch_state_of(const acrobot_batch_t *batch,
+acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch,
     size_t index,
     acrobot_state_t *state);
 
 // The number of its steps stays.
-acrobot_status_t acrobot_batch_set_state_of(acrobot_batch_t *batch,
+acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
     size_t index,
     const acrobot_state_t *state,
     acrobot_error_t *error);

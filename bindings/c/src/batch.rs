@@ -3,7 +3,7 @@
 use core::ffi::{c_int, c_void};
 use core::{ptr, slice};
 
-use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::task::Gymnasium;
 use acrobot::{Fast, Params, ResetOptions};
@@ -45,10 +45,12 @@ pub struct acrobot_batch_results_t {
 
 type LanesBlock = Block<Fast, LANES>;
 
+type Memory = BatchMemory<&'static mut [LanesBlock], &'static mut [Pcg64]>;
+
 pub struct Placed {
     /// Where `acrobot_batch_init` put it.
     address: usize,
-    batch: Batch<Fast, (&'static mut [LanesBlock], &'static mut [Pcg64]), Gymnasium, LANES>,
+    batch: Batch<Fast, Memory, Gymnasium, LANES>,
 }
 
 impl Holder for acrobot_batch_t {
@@ -126,7 +128,8 @@ pub unsafe extern "C" fn acrobot_batch_init(
         }
         let blocks = slice::from_raw_parts_mut(blocks, block_count);
         let generators = slice::from_raw_parts_mut(generators, count);
-        let value = Placed { address: to.addr(), batch: Batch::new(seed, (blocks, generators))? };
+        let batch_memory = BatchMemory { blocks, generators, own: () };
+        let value = Placed { address: to.addr(), batch: Batch::new(seed, batch_memory)? };
         Holder::init(to, value)?;
         batch.write(to);
         Ok(())
@@ -278,26 +281,23 @@ pub unsafe extern "C" fn acrobot_batch_set_max_steps(
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_state_of(
+pub unsafe extern "C" fn acrobot_batch_state(
     batch: *const acrobot_batch_t,
     index: usize,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    get(batch, state, |placed| {
-        let state = placed.batch.state_of(index);
-        Ok(state.ok_or(ACROBOT_ERROR_NO_SUCH_INDEX)?.into())
-    })
+    get(batch, state, |placed| Ok(placed.batch.state(index)?.into()))
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_set_state_of(
+pub unsafe extern "C" fn acrobot_batch_set_state(
     batch: *mut acrobot_batch_t,
     index: usize,
     state: *const acrobot_state_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(batch, ptr::null_mut(), error, |placed| {
-        Ok(placed.batch.set_state_of(index, read(state)?.into())?)
+        Ok(placed.batch.set_state(index, read(state)?.into())?)
     })
 }
 
@@ -306,7 +306,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     batch: *const acrobot_batch_t,
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
-    get(batch, params, |placed| Ok(placed.batch.params_of(0).unwrap_or(Params::DEFAULT).into()))
+    get(batch, params, |placed| Ok(placed.batch.params(0).unwrap_or(Params::DEFAULT).into()))
 }
 
 #[unsafe(no_mangle)]
@@ -316,6 +316,6 @@ pub unsafe extern "C" fn acrobot_batch_set_params(
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(batch, ptr::null_mut(), error, |placed| {
-        Ok(placed.batch.set_params(read(params)?.try_into()?)?)
+        Ok(placed.batch.set_all_params(read(params)?.try_into()?)?)
     })
 }

@@ -34,7 +34,7 @@ const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
-    status(|| Holder::init(acrobot, TimeLimit::of(Acrobot::new(seed))))
+    status(|| Holder::init(acrobot, TimeLimit::with_task_limit(Acrobot::new(seed))))
 }
 
 #[unsafe(no_mangle)]
@@ -47,7 +47,7 @@ pub unsafe extern "C" fn acrobot_init_balance(
         balance.set_task(AnyTask::Balance);
         balance.set_params(Balance::PARAMS.cast())?;
         balance.reset_with_seed(seed);
-        Holder::init(acrobot, TimeLimit::of(balance))
+        Holder::init(acrobot, TimeLimit::with_task_limit(balance))
     })
 }
 
@@ -115,7 +115,7 @@ pub unsafe extern "C" fn acrobot_observe(
     acrobot: *const acrobot_t,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    get(acrobot, observation, |acrobot| Ok(acrobot.inner().observation().into()))
+    get(acrobot, observation, |acrobot| Ok(acrobot.observation().into()))
 }
 
 #[unsafe(no_mangle)]
@@ -156,7 +156,9 @@ pub unsafe extern "C" fn acrobot_set_state(
     state: *const acrobot_state_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    change(acrobot, ptr::null_mut(), error, |acrobot| Ok(acrobot.set_state(read(state)?.into())?))
+    change(acrobot, ptr::null_mut(), error, |acrobot| {
+        Ok(acrobot.inner_mut().set_state(read(state)?.into())?)
+    })
 }
 
 #[unsafe(no_mangle)]
@@ -174,7 +176,7 @@ pub unsafe extern "C" fn acrobot_set_params(
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(acrobot, ptr::null_mut(), error, |acrobot| {
-        Ok(acrobot.set_params(read(params)?.try_into()?)?)
+        Ok(acrobot.inner_mut().set_params(read(params)?.try_into()?)?)
     })
 }
 
@@ -194,7 +196,7 @@ pub unsafe extern "C" fn acrobot_energy(
     acrobot: *const acrobot_t,
     energy: *mut f32,
 ) -> acrobot_status_t {
-    get(acrobot, energy, |acrobot| Ok(acrobot.inner().pendulum().energy()))
+    get(acrobot, energy, |acrobot| Ok(acrobot.pendulum().energy()))
 }
 
 #[unsafe(no_mangle)]
@@ -202,5 +204,5 @@ pub unsafe extern "C" fn acrobot_tip_height(
     acrobot: *const acrobot_t,
     height: *mut f32,
 ) -> acrobot_status_t {
-    get(acrobot, height, |acrobot| Ok(acrobot.inner().pendulum().tip_height()))
+    get(acrobot, height, |acrobot| Ok(acrobot.pendulum().tip_height()))
 }

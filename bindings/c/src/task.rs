@@ -4,7 +4,7 @@ use core::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Numbers};
 use acrobot::rand_core::Rng;
-use acrobot::task::{Balance, Gymnasium, ResetBounds, Seen, Task};
+use acrobot::task::{Balance, Gymnasium, Pose, ResetBounds, Task};
 use acrobot::{Params, State};
 
 /// A value and not a type, so that each function of the header is compiled once.
@@ -29,29 +29,29 @@ impl Task for AnyTask {
     }
 
     #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
-        Gymnasium.observe::<A, V>(seen) // also that of `Balance`
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 6] {
+        Gymnasium.observe::<A, V>(pose) // also that of `Balance`
     }
 
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> V::Mask {
         match self {
-            Self::Gymnasium => Gymnasium.ended::<A, V>(seen),
-            Self::Balance => Balance.ended::<A, V>(seen),
+            Self::Gymnasium => Gymnasium.terminated::<A, V>(pose),
+            Self::Balance => Balance.terminated::<A, V>(pose),
         }
     }
 
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        seen: &Seen<V>,
+        pose: &Pose<V>,
         params: &Params<V>,
         torque: V,
-        ended: V::Mask,
+        terminated: V::Mask,
     ) -> V::Single {
         match self {
-            Self::Gymnasium => Gymnasium.reward::<A, V>(seen, params, torque, ended),
-            Self::Balance => Balance.reward::<A, V>(seen, params, torque, ended),
+            Self::Gymnasium => Gymnasium.reward::<A, V>(pose, params, torque, terminated),
+            Self::Balance => Balance.reward::<A, V>(pose, params, torque, terminated),
         }
     }
 }

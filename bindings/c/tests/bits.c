@@ -125,7 +125,7 @@ static uint64_t batch_of_twenty(bool tiny)
         ACCEPTED(acrobot_batch_set_params(batch, &params, NULL));
     }
     for (int i = 0; i < COUNT && tiny; i++) {
-        ACCEPTED(acrobot_batch_set_state_of(batch, (size_t)i, &HANGING, NULL));
+        ACCEPTED(acrobot_batch_set_state(batch, (size_t)i, &HANGING, NULL));
     }
     ACCEPTED(acrobot_batch_set_autoreset(batch, ACROBOT_AUTORESET_SAME_STEP, NULL));
     for (int step = 0; step < 200; step++) {

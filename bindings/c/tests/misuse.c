@@ -77,8 +77,8 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     RESULT(BATCH, size_t, acrobot_batch_count(batch, out)) \
     ERROR(BATCH, acrobot_batch_set_autoreset(batch, 3, out)) \
     ERROR(BATCH, acrobot_batch_set_max_steps(batch, 0, out)) \
-    RESULT(BATCH, acrobot_state_t, acrobot_batch_state_of(batch, 0, out)) \
-    ERROR(BATCH, acrobot_batch_set_state_of(batch, 0, &FAR, out)) \
+    RESULT(BATCH, acrobot_state_t, acrobot_batch_state(batch, 0, out)) \
+    ERROR(BATCH, acrobot_batch_set_state(batch, 0, &FAR, out)) \
     RESULT(BATCH, acrobot_params_t, acrobot_batch_params(batch, out)) \
     ERROR(BATCH, acrobot_batch_set_params(batch, &NO_MASS, out)) \
     RESULT(PLANNER, size_t, acrobot_planner_plan(planner, &UP, 1, 4, knots, COUNT, out, NULL)) \
@@ -394,9 +394,9 @@ static void arguments_of_a_batch(void)
     REJECTED(WRONG_COUNT, acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT + 1));
     REJECTED(OVERLAP, acrobot_batch_reset_with_seeds(batch, (const uint64_t *)(void *)held, COUNT));
     REJECTED(OUT_OF_RANGE, acrobot_batch_set_autoreset(batch, 256, NULL));
-    REJECTED(NO_SUCH_INDEX, acrobot_batch_state_of(batch, COUNT, &state));
-    REJECTED(NO_SUCH_INDEX, acrobot_batch_set_state_of(batch, COUNT, &REST, NULL));
-    REJECTED(NULL, acrobot_batch_set_state_of(batch, 0, NULL, NULL));
+    REJECTED(NO_SUCH_INDEX, acrobot_batch_state(batch, COUNT, &state));
+    REJECTED(NO_SUCH_INDEX, acrobot_batch_set_state(batch, COUNT, &REST, NULL));
+    REJECTED(NULL, acrobot_batch_set_state(batch, 0, NULL, NULL));
     REJECTED(NULL, acrobot_batch_set_params(batch, NULL, NULL));
     params.damping2 = 1;
     expect_message(acrobot_batch_set_params(batch, &params, &error),

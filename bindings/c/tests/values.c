@@ -77,8 +77,8 @@ static void a_batch(void)
     ACCEPTED(acrobot_batch_count(batch, &count));
     CHECK(count == COUNT);
     ACCEPTED(acrobot_batch_observe(batch, first, COUNT));
-    ACCEPTED(acrobot_batch_set_state_of(batch, 1, &MOVING, NULL));
-    ACCEPTED(acrobot_batch_state_of(batch, 1, &state));
+    ACCEPTED(acrobot_batch_set_state(batch, 1, &MOVING, NULL));
+    ACCEPTED(acrobot_batch_state(batch, 1, &state));
     CHECK(same(&state, &MOVING, sizeof state));
     params.damping1 = params.damping2 = params.coulomb1 = params.coulomb2 = params.rotor = 0;
     ACCEPTED(acrobot_batch_set_params(batch, &params, NULL));

@@ -16,7 +16,7 @@ const ARRAYS = {
   rewards: [Float32Array, 1],
   terminated: [Uint8Array, 1],
   truncated: [Uint8Array, 1],
-  ended: [Uint8Array, 1],
+  done: [Uint8Array, 1],
   finalObservations: [Float32Array, 6],
   actions: [Uint8Array, 1],
   mask: [Uint8Array, 1],
@@ -74,7 +74,7 @@ export class Batch extends Environment {
   }
 
   #copyResults() {
-    for (const name of ["observations", "rewards", "terminated", "truncated", "ended"]) {
+    for (const name of ["observations", "rewards", "terminated", "truncated", "done"]) {
       this.#copy(name);
     }
     if (this.#settings.autoreset === "SameStep") this.#copy("finalObservations");

@@ -218,7 +218,7 @@ export interface BatchStep {
   /** 1 after `maxSteps` steps, otherwise 0. */
   truncated: Uint8Array;
   /** 1 if either is; with "Disabled", until the step after the reset. For `resetMasked`. */
-  ended: Uint8Array;
+  done: Uint8Array;
   /** With "SameStep": the last observation of each episode that this step ended. */
   finalObservations?: Float32Array;
 }

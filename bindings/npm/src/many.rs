@@ -3,10 +3,10 @@
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Damped};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers};
-use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams, StepBuffers};
+use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Pendulum;
-use acrobot::task::{Balance, Draw, Draws, Gymnasium, Swingup};
+use acrobot::task::{Balance, Draw, Gymnasium, Swingup};
 use acrobot::{Action, Error, Fast, ResetOptions};
 
 use crate::words;
@@ -16,8 +16,8 @@ use memory::{set_numbers, zeros};
 const LANES: usize = 4;
 
 /// Vectors for parameters of each acrobot, too, or for none. Compiling both takes 13 KB.
-type Memory<A> =
-    (Vec<Block<A, LANES>>, Vec<Pcg64>, Vec<LaneParams<A, LANES>>, Draws<<A as Arithmetic>::Scalar>);
+type Own<A> = OwnParams<Vec<LaneParams<A, LANES>>, <A as Arithmetic>::Scalar>;
+type Memory<A> = BatchMemory<Vec<Block<A, LANES>>, Vec<Pcg64>, Own<A>>;
 
 type Acrobots<A, T> = Batch<A, Memory<A>, T, LANES>;
 
@@ -70,23 +70,23 @@ pub struct Many {
     truncated: Vec<bool>,
     final_observations: Vec<[f32; 6]>,
     /// Whose episodes have ended: in this step, or with `Disabled` since the last reset.
-    ended: Vec<bool>,
+    done: Vec<bool>,
 }
 
 fn memory<A: Arithmetic>(count: usize, own_params: bool) -> Option<Memory<A>> {
     let len = count.div_ceil(LANES);
     let own = if own_params { len } else { 0 };
     // SAFETY: all are numbers and flags, which `Batch::new` writes.
-    unsafe { Some((zeros(len)?, zeros(count)?, zeros(own)?, Draws::NONE)) }
+    let (blocks, generators, own) = unsafe { (zeros(len)?, zeros(count)?, zeros(own)?) };
+    Some(BatchMemory { blocks, generators, own: OwnParams::new(own) })
 }
 
 impl Many {
     fn new(count: usize, own_params: bool, task: u32, is_alone: bool) -> Option<Self> {
-        let seed = SeedSequence::new(0);
         let batch = match task {
-            0 => Tasks::Acrobot(Batch::new(seed, memory(count, own_params)?).ok()?),
-            1 => Tasks::Swingup(Batch::new(seed, memory(count, own_params)?).ok()?),
-            _ => Tasks::Balance(Batch::new(seed, memory(count, own_params)?).ok()?),
+            0 => Tasks::Acrobot(Batch::new(0, memory(count, own_params)?).ok()?),
+            1 => Tasks::Swingup(Batch::new(0, memory(count, own_params)?).ok()?),
+            _ => Tasks::Balance(Batch::new(0, memory(count, own_params)?).ok()?),
         };
         // SAFETY: all are numbers and flags.
         let mut many = unsafe {
@@ -103,7 +103,7 @@ impl Many {
                 terminated: zeros(count)?,
                 truncated: zeros(count)?,
                 final_observations: zeros(count)?,
-                ended: zeros(count)?,
+                done: zeros(count)?,
             }
         };
         many.mask.fill(true);
@@ -155,7 +155,7 @@ pub extern "C" fn settings(many: &Many) {
         many.rewards.as_ptr().addr(),
         many.terminated.as_ptr().addr(),
         many.truncated.as_ptr().addr(),
-        many.ended.as_ptr().addr(),
+        many.done.as_ptr().addr(),
         many.final_observations.as_ptr().addr(),
         many.actions.as_ptr().addr(),
         many.mask.as_ptr().addr(),
@@ -238,7 +238,7 @@ impl Many {
     fn note_torques(&mut self) {
         with_task!(&self.batch, batch => {
             for (index, torques) in self.torques_of.iter_mut().enumerate() {
-                *torques = batch.params_of(index).map_or(*torques, |params| params.torques);
+                *torques = batch.params(index).map_or(*torques, |params| params.torques);
             }
         });
     }
@@ -258,16 +258,16 @@ impl Many {
             // All are tried before one changes.
             for is_trial in [true, false] {
                 for each in indices.clone() {
-                    let Some(before) = batch.params_of(each) else {
+                    let Ok(before) = batch.params(each) else {
                         break;
                     };
                     let params = memory::changed(before, mask);
                     if index.is_none() && !batch.has_own_params() {
-                        return batch.set_params(params);
+                        return batch.set_all_params(params);
                     }
-                    batch.set_params_of(each, params)?;
+                    batch.set_params(each, params)?;
                     if is_trial {
-                        batch.set_params_of(each, before)?;
+                        batch.set_params(each, before)?;
                     }
                 }
             }
@@ -297,10 +297,10 @@ pub extern "C" fn step(many: &mut Many, given_torques: bool) -> bool {
         }
         let lasts = batch.autoreset() == Autoreset::Disabled;
         let flags = many.terminated.iter().zip(&many.truncated);
-        for (i, (ended, (terminated, truncated))) in many.ended.iter_mut().zip(flags).enumerate() {
-            *ended = terminated | truncated;
+        for (i, (done, (terminated, truncated))) in many.done.iter_mut().zip(flags).enumerate() {
+            *done = terminated | truncated;
             if lasts {
-                *ended |= batch.ended_of(i).unwrap_or_default();
+                *done |= batch.is_done(i).unwrap_or_default();
             }
         }
     });
@@ -331,10 +331,10 @@ pub extern "C" fn step_action(many: &mut Many, action: usize) -> u32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn read_one(many: &Many, index: usize) {
     let read = with_task!(&many.batch, batch => {
-        let params = batch.params_of(index);
-        params.zip(batch.state_of(index)).zip(batch.elapsed_steps_of(index))
+        (batch.params(index), batch.state(index), batch.elapsed_steps(index))
     });
-    if let (Some(((params, state), elapsed_steps)), Some(torque)) = (read, many.torques.get(index))
+    if let ((Ok(params), Ok(state), Ok(elapsed_steps)), Some(torque)) =
+        (read, many.torques.get(index))
         && let Ok(pendulum) = Pendulum::<Damped<Fast>>::new(params, state)
     {
         let [a, b, c, d] = state.into();
@@ -347,12 +347,12 @@ pub extern "C" fn read_one(many: &Many, index: usize) {
 #[unsafe(no_mangle)]
 pub extern "C" fn set_state(many: &mut Many, index: usize) -> u32 {
     let state = words::get_state();
-    memory::reason(with_task!(&mut many.batch, batch => batch.set_state_of(index, state)))
+    memory::reason(with_task!(&mut many.batch, batch => batch.set_state(index, state)))
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn params(many: &Many, index: usize) {
-    if let Some(params) = with_task!(&many.batch, batch => batch.params_of(index)) {
+    if let Ok(params) = with_task!(&many.batch, batch => batch.params(index)) {
         words::set_params(&params);
     }
 }

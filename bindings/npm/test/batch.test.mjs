@@ -24,23 +24,23 @@ const row = (array, i) => array.slice(6 * i, 6 * i + 6);
 /** Returns a function that steps a batch and acrobots alone by one method, and compares them. */
 function together(batch, others) {
   const { autoreset } = batch.settings;
-  const ended = new Array(COUNT).fill(false);
+  const done = new Array(COUNT).fill(false);
   return (method, inputs) => {
     const results = batch[method](inputs);
     for (let i = 1; i < COUNT; i++) {
-      const [other, found] = [others[i], [results.rewards[i], results.ended[i]]];
-      if (autoreset === "NextStep" && ended[i]) {
+      const [other, found] = [others[i], [results.rewards[i], results.done[i]]];
+      if (autoreset === "NextStep" && done[i]) {
         other.reset();
-        ended[i] = false;
+        done[i] = false;
         assert.deepEqual(found, [0, 0]);
       } else {
-        const isOver = autoreset === "Disabled" && ended[i] && other.elapsedSteps > 0;
+        const isOver = autoreset === "Disabled" && done[i] && other.elapsedSteps > 0;
         const { observation, reward, terminated, truncated } = other[method](inputs[i]);
-        ended[i] = isOver || terminated || truncated;
-        assert.deepEqual(found, [reward, Number(ended[i])]);
+        done[i] = isOver || terminated || truncated;
+        assert.deepEqual(found, [reward, Number(done[i])]);
         const flags = [results.terminated[i], results.truncated[i]];
         assert.deepEqual(flags, [Number(terminated), Number(truncated)]);
-        if (autoreset === "SameStep" && ended[i]) {
+        if (autoreset === "SameStep" && done[i]) {
           assert.deepEqual(row(results.finalObservations, i), observation);
           other.reset();
         }
@@ -78,11 +78,11 @@ for (const [name, mode, shared] of [
       const actions = Uint8Array.from({ length: COUNT }, () => random(3));
       const torques = Float32Array.from({ length: COUNT }, () => random(401) / 100 - 2);
       const [method, inputs] = steps % 3 ? ["step", actions] : ["stepTorque", torques];
-      const { ended } = step(method, steps % 2 ? inputs : [...inputs]);
+      const { done } = step(method, steps % 2 ? inputs : [...inputs]);
       if (mode.autoreset !== "Disabled" || steps % 10 !== 9) continue;
-      const mask = Array.from(ended, Boolean);
+      const mask = Array.from(done, Boolean);
       const seed = steps > 60 ? 7n : undefined;
-      const observations = batch.resetMasked(steps % 20 < 10 ? ended : mask, seed);
+      const observations = batch.resetMasked(steps % 20 < 10 ? done : mask, seed);
       for (let i = 1; i < COUNT; i++) {
         if (mask[i]) others[i].reset(seed && child(seed, i));
         assert.deepEqual(row(observations, i), others[i].observation);

@@ -118,7 +118,7 @@ impl Batch {
                     }
                     for (index, state) in states.iter().enumerate() {
                         if mask.is_none_or(|mask| mask[index]) {
-                            many.batch.set_state_of(index, State::from(*state).cast())?;
+                            many.batch.set_state(index, State::from(*state).cast())?;
                         }
                     }
                     Ok::<_, Error>(())
@@ -203,19 +203,19 @@ impl Batch {
     }
 
     /// The first environment, if any, whose episode has ended and that waits for a reset.
-    fn first_ended(slf: &Bound<'_, Self>) -> PyResult<Option<usize>> {
+    fn first_done(slf: &Bound<'_, Self>) -> PyResult<Option<usize>> {
         let this = alone(slf)?;
         Ok(with_batch!(&this.engine, many => {
-            (0..many.batch.len()).find(|&index| many.batch.ended_of(index) == Some(true))
+            (0..many.batch.len()).find(|&index| many.batch.is_done(index) == Ok(true))
         }))
     }
 
     /// The number of steps of each acrobot's episode.
     fn elapsed<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let this = alone(slf)?;
-        let steps = (0..this.__len__()).filter_map(
-            |index| with_batch!(&this.engine, many => many.batch.elapsed_steps_of(index)),
-        );
+        let steps = (0..this.__len__()).filter_map(|index| {
+            with_batch!(&this.engine, many => many.batch.elapsed_steps(index)).ok()
+        });
         Ok(PyArray1::from_iter(slf.py(), steps.map(i64::from)))
     }
 

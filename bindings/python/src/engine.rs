@@ -107,7 +107,7 @@ impl<A: Arithmetic> From<Many<A>> for Saved<A> {
             max_steps: batch.max_steps(),
             autoreset: batch.autoreset(),
             draws: batch.has_own_params().then(|| *batch.draws().params()),
-            members: (0..batch.len()).filter_map(|index| batch.member(index)).collect(),
+            members: (0..batch.len()).filter_map(|index| batch.member(index).ok()).collect(),
         }
     }
 }
@@ -121,7 +121,7 @@ impl<A: Arithmetic> TryFrom<Saved<A>> for Many<A> {
         let mut many = Self::new(task, members.len(), SeedSequence::new(0))?;
         many.batch.set_max_steps(max_steps);
         if let Some(first) = members.first() {
-            many.batch.set_params(first.params)?;
+            many.batch.set_all_params(first.params)?;
         }
         if draws.is_some() {
             many.batch.own_params()?;
@@ -139,17 +139,17 @@ impl<A: Arithmetic> Many<A> {
     fn new(task: AnyTask, len: usize, seed: SeedSequence) -> Result<Self, Error> {
         let mut batch = VecBatch::new(seed, len)?;
         batch.set_task(task);
-        batch.set_params(task.params().cast())?;
+        batch.set_all_params(task.params().cast())?;
         batch.set_reset_bounds(task.bounds());
         Ok(Self { batch, actions: Vec::new(), torques: Vec::new() })
     }
 
     pub fn params(&self, index: usize) -> Params {
-        self.batch.params_of(index).unwrap_or_default().cast()
+        self.batch.params(index).unwrap_or_default().cast()
     }
 
     pub fn state(&self, index: usize) -> State {
-        self.batch.state_of(index).unwrap_or_default().cast()
+        self.batch.state(index).unwrap_or_default().cast()
     }
 
     /// Sets all states, if all are valid.
@@ -157,7 +157,7 @@ impl<A: Arithmetic> Many<A> {
         check_states::<A::Scalar>(states)?;
         for (index, state) in states.iter().enumerate() {
             let state = State::from(*state).cast();
-            self.batch.set_state_of(index, state).map_err(rejected)?;
+            self.batch.set_state(index, state).map_err(rejected)?;
         }
         Ok(())
     }
@@ -181,11 +181,11 @@ impl<A: Arithmetic> Many<A> {
             each.push(given);
         }
         if each.iter().all(|params| *params == each[0]) {
-            self.batch.set_params(each[0])
+            self.batch.set_all_params(each[0])
         } else {
             self.batch.own_params().map_err(out_of_memory)?;
             let mut each = each.into_iter().enumerate();
-            each.try_for_each(|(index, params)| self.batch.set_params_of(index, params))
+            each.try_for_each(|(index, params)| self.batch.set_params(index, params))
         }
         .and_then(|()| self.batch.set_draws(draws))
         .map_err(rejected)
@@ -244,7 +244,7 @@ impl<A: Arithmetic> Many<A> {
             Inputs::Torques(from) => {
                 let is_own = from.len() > 1 && self.batch.has_own_params();
                 let bounds = |index| {
-                    let params = self.batch.params_of(index).unwrap_or_default();
+                    let params = self.batch.params(index).unwrap_or_default();
                     let [a, b, c] = params.torques.map(Real::to_f64);
                     (a.min(b).min(c), a.max(b).max(c))
                 };

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Numbers};
 use acrobot::rand_core::Rng;
-use acrobot::task::{Balance, Gymnasium, ResetBounds, Seen, Swingup, Task};
+use acrobot::task::{Balance, Gymnasium, Pose, ResetBounds, Swingup, Task};
 use acrobot::{Params, State};
 use serde::{Deserialize, Serialize};
 
@@ -80,23 +80,23 @@ impl Task for AnyTask {
     }
 
     #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
-        with_task!(self, Is => Is::DEFAULT.observe::<A, V>(seen))
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 6] {
+        with_task!(self, Is => Is::DEFAULT.observe::<A, V>(pose))
     }
 
     #[inline(always)]
-    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
-        with_task!(self, Is => Is::DEFAULT.ended::<A, V>(seen))
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> V::Mask {
+        with_task!(self, Is => Is::DEFAULT.terminated::<A, V>(pose))
     }
 
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        seen: &Seen<V>,
+        pose: &Pose<V>,
         params: &Params<V>,
         torque: V,
-        ended: V::Mask,
+        terminated: V::Mask,
     ) -> V::Single {
-        with_task!(self, Is => Is::DEFAULT.reward::<A, V>(seen, params, torque, ended))
+        with_task!(self, Is => Is::DEFAULT.reward::<A, V>(pose, params, torque, terminated))
     }
 }

@@ -101,7 +101,7 @@ impl<'w, const S: usize, const T: usize> QLambda<'w, S, T> {
                 let (state, _) = view(&env.state());
                 self.store(Transition { state, ..Transition::EMPTY });
             }
-            if step.done() {
+            if step.is_done() {
                 break;
             }
         }

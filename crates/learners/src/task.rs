@@ -8,12 +8,12 @@ pub type Env = TimeLimit<Acrobot<Fast>>;
 
 /// The acrobot that every program trains with this seed.
 pub fn training(seed: SeedSequence) -> Env {
-    TimeLimit::of(Acrobot::with_rng(seed.into()))
+    TimeLimit::with_task_limit(Acrobot::new(seed))
 }
 
 /// An acrobot with other initial states than [`training`] with this seed.
 pub fn evaluation(seed: &SeedSequence) -> Env {
-    TimeLimit::of(Acrobot::with_rng(seed.child(1).into()))
+    TimeLimit::with_task_limit(Acrobot::new(seed.child(1)))
 }
 
 /// Plays an episode from a new initial state. Returns the sum of the rewards and whether the goal
@@ -24,7 +24,7 @@ pub fn play(env: &mut Env, mut policy: impl FnMut(&State<f32>) -> Action) -> (f3
     loop {
         let step = env.step(policy(&env.state()));
         sum += step.reward;
-        if step.done() {
+        if step.is_done() {
             return (sum, step.terminated);
         }
     }

@@ -72,7 +72,7 @@ fn the_weights_equal_those_of_the_definition() {
     let mut memory = Memory::<1408, 16, STEPS>::EMPTY;
     for budget in [Budget::Episodes(60), Budget::Steps(10_000)] {
         let mut learner = QLambda::new(budget, &mut memory);
-        let mut env = TimeLimit::of(Acrobot::new(5));
+        let mut env = TimeLimit::with_task_limit(Acrobot::new(5));
         let mut steps: Vec<Step> = Vec::new();
         let (mut goals, mut others, mut passed) = (0, 0, 0);
         for episode in 0..80 {

@@ -118,8 +118,8 @@ fn other_files_are_rejected() {
 fn the_trained_policy_swings_up() {
     let policy = Policy::<64>::new(include_bytes!("../policy.bin")).unwrap();
     let steps = [1, 2, 3, 4, 5].map(|seed| {
-        let mut env = TimeLimit::of(Acrobot::<Fast>::new(seed));
-        while !env.step(policy.action(&env.observation())).done() {}
+        let mut env = TimeLimit::with_task_limit(Acrobot::<Fast>::new(seed));
+        while !env.step(policy.action(&env.observation())).is_done() {}
         env.elapsed_steps()
     });
     assert_eq!(steps, [101, 88, 96, 72, 72]);

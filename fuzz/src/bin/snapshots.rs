@@ -7,7 +7,9 @@ use std::num::NonZeroU32;
 use std::path::Path;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
+use acrobot::batch::{
+    Autoreset, Batch, BatchMemory, Block, LaneParams, Member, OwnParams, VecBatch,
+};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Dynamics;
 use acrobot::task::{Draw, Draws, Gymnasium};
@@ -121,7 +123,7 @@ impl<A: Arithmetic> Snapshot for Acrobot<A> {
 
 impl<A: Arithmetic> Snapshot for TimeLimit<Acrobot<A>> {
     fn sample() -> Self {
-        let mut limited = TimeLimit::of(Acrobot::sample());
+        let mut limited = TimeLimit::with_task_limit(Acrobot::sample());
         limited.step(Action::Zero);
         limited
     }
@@ -140,7 +142,7 @@ impl<A: Arithmetic> Snapshot for Member<A> {
             params: Params { dynamics: Dynamics::Nips, ..*acrobot.params() },
             state: acrobot.state(),
             elapsed_steps: 3,
-            ended: true,
+            is_done: true,
             rng: acrobot.rng().clone(),
         }
     }
@@ -152,7 +154,7 @@ impl<A: Arithmetic> Snapshot for Member<A> {
             && self.params.validate().is_ok()
             && (A::HAS_FRICTION || !has_friction);
         for autoreset in [Autoreset::NextStep, Autoreset::SameStep, Autoreset::Disabled] {
-            let mut batch = VecBatch::<A>::new(0.into(), 1).expect("memory for one");
+            let mut batch = VecBatch::<A>::new(0, 1).expect("memory for one");
             batch.own_params().expect("memory for one");
             batch.set_autoreset(autoreset);
             assert_eq!(batch.set_member(0, self.clone()).is_ok(), valid);
@@ -174,7 +176,7 @@ fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, Gymnasium
 /// With one or three lanes each acrobot has its own parameters.
 impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, Gymnasium, N> {
     fn sample() -> Self {
-        let mut batch = Self::new(42.into(), 4).expect("memory for four");
+        let mut batch = Self::new(42, 4).expect("memory for four");
         if N < 4 {
             let [low, high] = [0.0, 0.5].map(A::Scalar::from_f64);
             let torque_noise = Draw::Uniform { low, high };
@@ -190,8 +192,9 @@ impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, Gymnasium, N> {
 
     fn check(mut self) -> bool {
         let len = self.len();
-        let own = vec![LaneParams::default(); len];
-        let memory = (vec![Block::EMPTY; len], vec![Pcg64::UNSEEDED; len], own, Draws::NONE);
+        let (blocks, generators) = (vec![Block::EMPTY; len], vec![Pcg64::UNSEEDED; len]);
+        let own = OwnParams::new(vec![LaneParams::default(); len]);
+        let memory = BatchMemory { blocks, generators, own };
         let bytes = binary(&self);
         let from = &mut postcard::Deserializer::from_bytes(&bytes);
         let loaded = Batch::<A, _, Gymnasium, 1>::from_snapshot(memory, from);

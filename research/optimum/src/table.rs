@@ -40,14 +40,14 @@ fn learnt<const S: usize, const T: usize, const N: usize>(mut memory: Memory<S, 
 
 /// The mean return of a policy in `Fast`, with at most 500 steps per episode.
 fn mean(mut policy: impl FnMut(&State<f32>) -> Action) -> f64 {
-    let mut env = TimeLimit::of(Acrobot::<Fast>::new(0));
+    let mut env = TimeLimit::with_task_limit(Acrobot::<Fast>::new(0));
     let mut sum = 0.0;
     for seed in 0..SEEDS {
-        env.reset_with_seed(seed.into());
+        env.reset_with_seed(u64::from(seed));
         loop {
             let step = env.step(policy(&env.state()));
             sum += f64::from(step.reward);
-            if step.done() {
+            if step.is_done() {
                 break;
             }
         }

@@ -31,9 +31,9 @@ const TINY: f64 = 1.0 / 134_217_728.0;
 #[inline(always)]
 pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
     if V::IS_ONE {
-        return x.map2(of_one);
+        return x.map_unzip(of_one);
     }
-    let (sin, cos) = x.map2(|x| {
+    let (sin, cos) = x.map_unzip(|x| {
         if !HAS_SIMD {
             return of_one(x);
         }
@@ -76,7 +76,7 @@ fn complete<V: Numbers<f64>>(x: V, sin: V, cos: V) -> (V, V) {
         x.zip3(sin, cos, |x, sin, cos| (one(x, sin, 0), one(x, cos, 1)))
     }
     let one = V::splat(1.0);
-    if sin.all_within(one) & cos.all_within(one) { (sin, cos) } else { each(x, sin, cos) }
+    if sin.all_abs_le(one) & cos.all_abs_le(one) { (sin, cos) } else { each(x, sin, cos) }
 }
 
 #[inline(always)]

@@ -23,11 +23,11 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
     let is_fast = if V::IS_ONE { HAS_F64 } else { HAS_SIMD };
     if !is_fast {
         // `libm` has branches instead, so it needs fewer instructions.
-        return x.map2(libm::sincos);
+        return x.map_unzip(libm::sincos);
     }
-    if V::IS_ONE && x.all_within(largest) {
+    if V::IS_ONE && x.all_abs_le(largest) {
         // A branch is faster than the reduction, for which one number has to wait.
-        return x.map2(|x| reduced(f64::MAGIC, x, 0.0));
+        return x.map_unzip(|x| reduced(f64::MAGIC, x, 0.0));
     }
     let shifted = x * c(core::f64::consts::FRAC_2_PI) + c(f64::MAGIC);
     let n = shifted - c(f64::MAGIC);
@@ -36,7 +36,7 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
     let y = high - low;
     let tail = (high - y) - low;
     let least = x * c(1.0 / 32_768.0);
-    if y.all_within(largest) & least.all_within(y.map(f64::abs)) {
+    if y.all_abs_le(largest) & least.all_abs_le(y.map(f64::abs)) {
         shifted.zip3(y, tail, reduced)
     } else {
         by_libm(x)
@@ -46,7 +46,7 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
 #[cold]
 #[inline(never)]
 fn by_libm<V: Numbers<f64>>(x: V) -> (V, V) {
-    x.map2(libm::sincos)
+    x.map_unzip(libm::sincos)
 }
 
 /// Sine and cosine of y + `tail` + n π/2. The lowest bits of `shifted` are those of n.

@@ -1,7 +1,9 @@
 //! Fixed episodes and batches, and a digest of every bit of each.
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
+use acrobot::batch::{
+    Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams, StepBuffers, Storage,
+};
 use acrobot::numpy::Pcg64;
 use acrobot::task::{Draw, Draws, Gymnasium, Task};
 use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
@@ -26,9 +28,9 @@ pub fn add_seen<A: Arithmetic, T: Task>(
 /// episodes have random actions, odd ones torque against θ̇1.
 fn episode<A: Arithmetic>(number: u64) -> u64 {
     let mut digest = Digest::default();
-    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(number));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A>::new(number));
     let mut actions = Pcg64::new(number);
-    add_seen(&mut digest, acrobot.inner(), acrobot.inner().observation());
+    add_seen(&mut digest, acrobot.inner(), acrobot.observation());
     loop {
         let action = if number.is_multiple_of(2) {
             Action::sample(&mut actions)
@@ -39,7 +41,7 @@ fn episode<A: Arithmetic>(number: u64) -> u64 {
         add_seen(&mut digest, acrobot.inner(), step.observation);
         digest.add(step.reward.to_bits().into());
         digest.add(u64::from(step.terminated) << 1 | u64::from(step.truncated));
-        if step.done() {
+        if step.is_done() {
             let start = acrobot.reset();
             add_seen(&mut digest, acrobot.inner(), start);
             return digest.0;
@@ -121,18 +123,20 @@ pub fn batches<const N: usize, const BLOCKS_OF_20: usize, const BLOCKS_OF_8: usi
 #[inline(never)]
 pub fn shared_params<const N: usize, const BLOCKS: usize>() -> u64 {
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
-    batch::<20, N, _>((&mut blocks[..], &mut generators[..]), |_| {})
+    let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
+    batch::<20, N, _>(BatchMemory { blocks, generators, own: () }, |_| {})
 }
 
 /// As [`shared_params`] with subnormal numbers.
 #[inline(never)]
 fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
-    batch::<20, N, _>((&mut blocks[..], &mut generators[..]), |batch| {
+    let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
+    batch::<20, N, _>(BatchMemory { blocks, generators, own: () }, |batch| {
         let mut params = Params::DEFAULT;
         subnormal_torques::<Fast>(&mut params);
         // Neither fails: a failure changes the digest.
-        let _ = batch.set_params(params);
+        let _ = batch.set_all_params(params);
         let _ = batch.reset_to(&[State::HANGING; 20]);
     })
 }
@@ -149,7 +153,8 @@ fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
     });
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 8]);
     let mut own = [LaneParams::default(); BLOCKS];
-    let memory = (&mut blocks[..], &mut generators[..], &mut own[..], Draws::NONE);
+    let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
+    let memory = BatchMemory { blocks, generators, own: OwnParams::new(&mut own[..]) };
     batch::<8, N, _>(memory, |batch| {
         // It does not fail: a failure changes the digest.
         let _ = draws.and_then(|draws| batch.set_draws(draws));

@@ -19,7 +19,7 @@ pub type Display =
 pub fn drawn() -> u64 {
     let mut digest = Digest::default();
     let mut display = Display::new();
-    let mut acrobot = TimeLimit::of(Acrobot::<Fast>::new(42));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Fast>::new(42));
     let mut last = Figure::new(acrobot.inner());
     let Ok(()) = last.draw(&mut display, &Theme::MONOCHROME);
     let mut done = false;
@@ -34,7 +34,7 @@ pub fn drawn() -> u64 {
             return digest.0;
         }
         let action = against(acrobot.state().dtheta1);
-        done = acrobot.step(action).done();
+        done = acrobot.step(action).is_done();
         let torque = acrobot.params().torque(action);
         let figure = Figure::new(acrobot.inner()).with_torque(torque);
         let Ok(()) = figure.redraw(&last, &mut display, &Theme::MONOCHROME);

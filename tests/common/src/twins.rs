@@ -18,7 +18,7 @@ pub struct Twins<A: Arithmetic, const N: usize = 16, T: Task = Gymnasium> {
     pub batch: VecBatch<A, T, N>,
     pub alone: Vec<TimeLimit<Acrobot<A, T>>>,
     /// Whether the episode of each of `alone` has ended and it waits for a reset.
-    pub ended: Vec<bool>,
+    pub done: Vec<bool>,
 }
 
 impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
@@ -29,14 +29,14 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
             batch.own_params().unwrap();
         }
         batch.set_autoreset(autoreset);
-        let alone = |i| TimeLimit::new(Acrobot::with_rng(seed.child(i).into()), T::MAX_STEPS);
-        Self { batch, alone: (0..len as u64).map(alone).collect(), ended: vec![false; len] }
+        let alone = |i| TimeLimit::new(Acrobot::new(seed.child(i)), T::MAX_STEPS);
+        Self { batch, alone: (0..len as u64).map(alone).collect(), done: vec![false; len] }
     }
 
     pub fn set_params(&mut self, params: Params<A::Scalar>) {
-        self.batch.set_params(params).unwrap();
+        self.batch.set_all_params(params).unwrap();
         for alone in &mut self.alone {
-            alone.set_params(params).unwrap();
+            alone.inner_mut().set_params(params).unwrap();
         }
         self.assert_equal();
     }
@@ -52,17 +52,17 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
             if mask.is_none_or(|mask| mask[i]) {
                 let seed = options.seed.as_ref().map(|seed| seed.child(i as u64));
                 reset_one(&self.batch, alone, ResetOptions { seed, ..options });
-                self.ended[i] = false;
+                self.done[i] = false;
             }
-            assert!(equal(&rows[i], &alone.inner().observation()));
+            assert!(equal(&rows[i], &alone.observation()));
         }
         self.assert_equal();
     }
 
     /// Call it when the batch has reset those whose episode had ended.
-    pub fn reset_ended(&mut self) {
-        for (alone, ended) in self.alone.iter_mut().zip(&mut self.ended) {
-            if std::mem::take(ended) {
+    pub fn reset_done(&mut self) {
+        for (alone, done) in self.alone.iter_mut().zip(&mut self.done) {
+            if std::mem::take(done) {
                 reset_one(&self.batch, alone, ResetOptions::default());
             }
         }
@@ -74,9 +74,9 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
         self.batch.reset_to(states).unwrap();
         for (alone, state) in self.alone.iter_mut().zip(states) {
             *alone = TimeLimit::new(alone.inner().clone(), alone.max_steps());
-            alone.set_state(*state).unwrap();
+            alone.inner_mut().set_state(*state).unwrap();
         }
-        self.ended.fill(false);
+        self.done.fill(false);
         self.assert_equal();
     }
 
@@ -101,14 +101,14 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
         let reset = |alone: &mut _| reset_one(&self.batch, alone, ResetOptions::default());
         for (i, alone) in self.alone.iter_mut().enumerate() {
             let (observation, reward, terminated, truncated);
-            let waits = std::mem::take(&mut self.ended[i]);
+            let waits = std::mem::take(&mut self.done[i]);
             if waits && autoreset == Autoreset::NextStep {
                 (observation, reward, terminated, truncated) = (reset(alone), 0.0, false, false);
             } else {
                 let step = step(i, alone);
                 (reward, terminated, truncated) = (step.reward, step.terminated, step.truncated);
-                self.ended[i] = (waits || step.done()) && autoreset != Autoreset::SameStep;
-                if step.done() && autoreset == Autoreset::SameStep {
+                self.done[i] = (waits || step.is_done()) && autoreset != Autoreset::SameStep;
+                if step.is_done() && autoreset == Autoreset::SameStep {
                     let last = &results.final_observations[i];
                     assert!(equal(last, &step.observation), "acrobot {i}");
                     observation = reset(alone);
@@ -138,16 +138,16 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
                 params: *inner.params(),
                 state: inner.state(),
                 elapsed_steps: alone.elapsed_steps(),
-                ended: self.ended[i],
+                is_done: self.done[i],
                 rng: inner.rng().clone(),
             };
             let member = batch.member(i).unwrap();
             assert_eq!(member, expected, "acrobot {i}");
             assert_eq!(bits(member.state), bits(expected.state), "acrobot {i}");
             assert!(equal(&rows[i], &inner.observation()), "acrobot {i}");
-            assert_eq!(batch.elapsed_steps_of(i), Some(member.elapsed_steps));
-            assert_eq!(batch.ended_of(i), Some(member.ended));
-            assert_eq!(batch.params_of(i), Some(member.params));
+            assert_eq!(batch.elapsed_steps(i), Ok(member.elapsed_steps));
+            assert_eq!(batch.is_done(i), Ok(member.is_done));
+            assert_eq!(batch.params(i), Ok(member.params));
         }
     }
 
@@ -172,7 +172,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
             }
             shared.set_params(Params {
                 torque_noise: Real::from_f64(0.5),
-                ..shared.batch.params_of(0).unwrap()
+                ..shared.batch.params(0).unwrap()
             });
             for twins in [&mut shared, &mut drawn] {
                 twins.batch.set_reset_bounds(ResetBounds::new(-100.0, 100.0).unwrap());

@@ -85,7 +85,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
 
     /// A rejected call leaves the batch as it was.
     fn call(&mut self, call: Call<A::Scalar>) {
-        let Twins { batch, alone, ended } = &mut self.twins;
+        let Twins { batch, alone, done } = &mut self.twins;
         let len = alone.len();
         match call {
             Call::Settings(autoreset, limit, level, bounds) => {
@@ -101,10 +101,10 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                 if !valid {
                     params.mass1 = Real::ZERO;
                 }
-                let set = batch.set_params_of(index, params);
+                let set = batch.set_params(index, params);
                 assert_eq!(set.is_ok(), valid && self.own_params && index < len);
                 if set.is_ok() {
-                    alone[index].set_params(params).unwrap();
+                    alone[index].inner_mut().set_params(params).unwrap();
                 }
             }
             Call::Draws(some) => {
@@ -118,18 +118,18 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
             }
             Call::ResetTo(states) => self.twins.reset_to(&states[..len]),
             Call::State(index, state) => {
-                assert_eq!(batch.set_state_of(index, state).is_ok(), index < len);
+                assert_eq!(batch.set_state(index, state).is_ok(), index < len);
                 if let Some(alone) = alone.get_mut(index) {
-                    alone.set_state(state).unwrap();
+                    alone.inner_mut().set_state(state).unwrap();
                 }
             }
             Call::Store(index) => {
                 let member = batch.member(index);
-                assert_eq!(member.is_some(), index < len);
-                self.stored = member.map(|member| (member, alone[index].clone(), ended[index]));
+                assert_eq!(member.is_ok(), index < len);
+                self.stored = member.ok().map(|member| (member, alone[index].clone(), done[index]));
             }
             Call::Load(index) => {
-                let Some((member, stored, had_ended)) = self.stored.clone() else {
+                let Some((member, stored, was_done)) = self.stored.clone() else {
                     return;
                 };
                 let fits = self.own_params || member.params == *alone[0].params();
@@ -139,9 +139,9 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                     alone[index] = stored;
                     alone[index].set_max_steps(batch.max_steps());
                     // Shared parameters can differ from the stored ones in the sign of zero.
-                    let params = batch.params_of(index).unwrap();
-                    alone[index].set_params(params).unwrap();
-                    ended[index] = had_ended;
+                    let params = batch.params(index).unwrap();
+                    alone[index].inner_mut().set_params(params).unwrap();
+                    done[index] = was_done;
                     self.settle();
                 }
             }
@@ -165,7 +165,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
     /// With `SameStep` no acrobot waits for a reset.
     fn settle(&mut self) {
         if self.twins.batch.autoreset() == Autoreset::SameStep {
-            self.twins.reset_ended();
+            self.twins.reset_done();
         }
     }
 }

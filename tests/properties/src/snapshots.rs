@@ -2,7 +2,6 @@
 
 use acrobot::arithmetic::{Damped, Modeled};
 use acrobot::batch::VecBatch;
-use acrobot::numpy::SeedSequence;
 use acrobot::task::Draws;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use common::{bits, draws};
@@ -82,7 +81,7 @@ struct Saved {
 
 #[test]
 fn every_format_stores_batches() {
-    let mut batch = VecBatch::new(SeedSequence::new(42), 3).unwrap();
+    let mut batch = VecBatch::new(42, 3).unwrap();
     batch.own_params().unwrap();
     for draws in [Draws::NONE, draws::<Fast>()] {
         batch.set_draws(draws).unwrap();

@@ -59,7 +59,7 @@ pub extern "C" fn begin(episodes: u32, words: usize, numbers: usize) -> Option<B
     if numbers.last().is_some_and(|dynamics| *dynamics != 0) {
         params.dynamics = Dynamics::Nips;
     }
-    env.set_params(params).ok()?;
+    env.inner_mut().set_params(params).ok()?;
     let memory = Box::leak(Box::new(Memory64::EMPTY));
     let learner = QLambda::new(Budget::Episodes(episodes), memory);
     Some(Box::new(Training { learner, env }))

@@ -43,11 +43,11 @@ pub extern "C" fn save(many: &Many) -> usize {
         }
         for index in 0..count {
             let member = with_task!(&many.batch, batch => {
-                batch.member(index).map(|Member { params, state, elapsed_steps, ended, rng }| {
-                    (params, (state, elapsed_steps, ended, rng))
+                batch.member(index).map(|Member { params, state, elapsed_steps, is_done, rng }| {
+                    (params, (state, elapsed_steps, is_done, rng))
                 })
             });
-            if let Some((params, fields)) = member {
+            if let Ok((params, fields)) = member {
                 snapshot::write_params(params, writer)?;
                 if many.is_alone {
                     let (state, elapsed_steps, _, rng) = fields;
@@ -105,13 +105,13 @@ fn load_batch(mut reader: Reader<'_>, count: usize, task: u32) -> Option<Many> {
 
 impl Many {
     fn load_member(&mut self, index: usize, params: Params<f32>, fields: Fields) -> Option<()> {
-        let (state, elapsed_steps, ended, rng) = fields;
+        let (state, elapsed_steps, is_done, rng) = fields;
         with_task!(&mut self.batch, batch => {
             // The first brings the parameters, if all acrobots share them.
             if index == 0 {
-                batch.set_params(params).ok()?;
+                batch.set_all_params(params).ok()?;
             }
-            let member = Member { params, state, elapsed_steps, ended, rng };
+            let member = Member { params, state, elapsed_steps, is_done, rng };
             batch.set_member(index, member).ok()
         })
     }

@@ -152,12 +152,12 @@ def warn_of_other_sines() -> None:
         )
 
 
-def final_infos(finals: NDArray[np.float32], ended: NDArray[np.bool_]) -> dict[str, Any]:
+def final_infos(finals: NDArray[np.float32], dones: NDArray[np.bool_]) -> dict[str, Any]:
     """Infos as in ``SyncVectorEnv``: last observations, ``None`` where no episode ended."""
-    if not ended.any():
+    if not dones.any():
         return {}
-    final_obs = np.full(len(ended), None, dtype=object)
-    for index in np.flatnonzero(ended):
+    final_obs = np.full(len(dones), None, dtype=object)
+    for index in np.flatnonzero(dones):
         final_obs[index] = finals[index].copy()
-    masks = {"_final_obs": ended, "_final_info": ended.copy()}
+    masks = {"_final_obs": dones, "_final_info": dones.copy()}
     return {"final_obs": final_obs, "final_info": {}, **masks}

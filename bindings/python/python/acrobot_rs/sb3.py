@@ -69,13 +69,13 @@ class AcrobotVecEnv(VecEnv):
         self,
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
         observations, rewards, terminated, truncated, infos = self.envs.step(self._actions)
-        ended = terminated | truncated
+        dones = terminated | truncated
         each: list[dict[str, Any]] = [
             {"TimeLimit.truncated": only} for only in (truncated & ~terminated).tolist()
         ]
-        for index in np.flatnonzero(ended):
+        for index in np.flatnonzero(dones):
             each[index]["terminal_observation"] = infos["final_obs"][index]
-        return observations, rewards.astype(np.float32, copy=False), ended, each
+        return observations, rewards.astype(np.float32, copy=False), dones, each
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
         values = self.envs.get_attr(attr_name)

@@ -191,7 +191,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """
         if not self._ready:
             raise ResetNeeded("the environments have no states yet; call reset before step")
-        if self._disabled and (index := self._native.first_ended()) is not None:
+        if self._disabled and (index := self._native.first_done()) is not None:
             raise ResetNeeded(
                 f"the episode of environment {index} has ended; reset it before the next step, "
                 'with options={"reset_mask": terminated | truncated}'

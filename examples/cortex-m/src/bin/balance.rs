@@ -116,7 +116,7 @@ fn run(
     let (mut uncaught, mut ticks, mut caught, mut longest) = (0, 0, 0, 0);
     let (mut error, mut counts, mut slowest) = (0_f32, 0, 0);
     for seed in 0..episodes {
-        let machine = Acrobot::with_params(seed.into(), params)?;
+        let machine = Acrobot::with_params(u64::from(seed), params)?;
         let episode = play(machine, swing_up.clone(), motor, plan, in_time)?;
         ticks += episode.ticks;
         counts += episode.counts;

@@ -15,7 +15,7 @@ use critical_section::Mutex;
 use semihosting::{println, process};
 
 static ACROBOT: Mutex<RefCell<TimeLimit<Acrobot<Fast>>>> =
-    Mutex::new(RefCell::new(TimeLimit::of(Acrobot::hanging(Pcg64::new(42)))));
+    Mutex::new(RefCell::new(TimeLimit::with_task_limit(Acrobot::hanging(Pcg64::new(42)))));
 
 /// 0.2 s of the 25 MHz clock of QEMU's mps2-an386. SysTick counts to 2²⁴ at most.
 const PERIOD: u32 = 5_000_000;
@@ -45,7 +45,7 @@ fn SysTick() {
             true => Action::Negative,
             false => Action::Positive,
         };
-        if acrobot.step(action).done() {
+        if acrobot.step(action).is_done() {
             println!("the episode ended after {} steps", acrobot.elapsed_steps());
             process::exit(0)
         }

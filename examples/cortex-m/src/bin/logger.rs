@@ -25,7 +25,7 @@ fn main() -> ! {
     defmt::info!("start {}", acrobot.state());
 
     let rejected = Params { dt: 0.0, ..Params::DEFAULT };
-    if let Err(error) = acrobot.set_params(rejected) {
+    if let Err(error) = acrobot.inner_mut().set_params(rejected) {
         defmt::warn!("{}", error);
     }
     if let Err(error) = ResetBounds::new(0.1, -0.1) {
@@ -40,7 +40,7 @@ fn main() -> ! {
         let step = acrobot.step(action);
         CLOCK.store(acrobot.elapsed_steps(), Ordering::Relaxed);
         defmt::debug!("{} {}", action, step);
-        if step.done() {
+        if step.is_done() {
             defmt::info!("end {}", acrobot.inner());
             process::exit(0)
         }

@@ -12,7 +12,9 @@ use core::num::NonZeroU32;
 use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
+use acrobot::batch::{
+    Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams, StepBuffers, Storage,
+};
 use acrobot::control::estimate::{Estimator, Noise, ParameterEstimator, ParameterStd};
 use acrobot::control::identify::{Regression, Sample, identify, prediction_error};
 use acrobot::control::plan::{Knot, Planner, Problem, SwingUp};
@@ -47,8 +49,9 @@ fn main() -> ! {
         all_of::<Portable, Gymnasium>();
         all_of::<Reference, Gymnasium>();
         all_of::<Damped<Fast>, Swingup>();
-        let (own, draws) = ([LaneParams::default(); 2], Draws::NONE);
-        batch::<Fast, Gymnasium, 20, 16>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20], own, draws));
+        let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
+        let own = OwnParams::new([LaneParams::default(); 2]);
+        batch::<Fast, Gymnasium, 20, 16>(BatchMemory { blocks, generators, own });
         numbers();
         learners();
         planner::<Fast>();
@@ -65,7 +68,8 @@ fn all_of<A: Arithmetic, T: Task<Observation = [f32; 6]>>() {
     control::<A>();
     environment::<A, T>();
     // Blocks of 16 lanes, the default, compile far longer, so only `main` has one.
-    batch::<A, T, 6, 4>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6]));
+    let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6]);
+    batch::<A, T, 6, 4>(BatchMemory { blocks, generators, own: () });
 }
 
 /// A number that the compiler cannot know.
@@ -136,7 +140,7 @@ fn control<A: Arithmetic>() {
 fn environment<A: Arithmetic, T: Task>() {
     let mut seeds = SeedSequence::new(black_box(42));
     for seed in seeds.spawn(black_box(2)) {
-        let mut acrobot = TimeLimit::of(Acrobot::<A, T>::with_rng(seed.clone().into()));
+        let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A, T>::new(seed.clone()));
         let mut trajectory = Trajectory::<A::Scalar, 8>::new();
         let inner = acrobot.inner_mut();
         let _ = black_box((
@@ -189,8 +193,8 @@ where
     for _ in 0..black_box(10) {
         batch.set_autoreset(black_box(Autoreset::Disabled));
         let _ = black_box((
-            batch.set_params(params()),
-            batch.set_params_of(black_box(3), params()),
+            batch.set_all_params(params()),
+            batch.set_params(black_box(3), params()),
             draws().and_then(|draws| batch.set_draws(draws)),
         ));
         let actions = black_box([1_u8; LEN]);
@@ -208,11 +212,11 @@ where
             batch.observe(&mut rows),
             batch.reset_masked(&black_box([true; LEN]), ResetOptions::default()),
             batch.reset_to(&black_box([State::default(); LEN])),
-            batch.set_state_of(black_box(3), state()),
+            batch.set_state(black_box(3), state()),
         ));
-        black_box((&rows, batch.state_of(black_box(3))));
-        black_box((batch.params_of(black_box(3)), batch.elapsed_steps_of(black_box(3))));
-        if let Some(member) = batch.member(black_box(3)) {
+        let _ = black_box((&rows, batch.state(black_box(3)), batch.is_done(black_box(3))));
+        let _ = black_box((batch.params(black_box(3)), batch.elapsed_steps(black_box(3))));
+        if let Ok(member) = batch.member(black_box(3)) {
             let _ = black_box(batch.set_member(black_box(4), member));
         }
         batch.reset();

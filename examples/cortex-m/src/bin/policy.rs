@@ -41,7 +41,7 @@ fn main() -> ! {
         loop {
             let step = env.step(POLICY.action(&env.observation()));
             gained += step.reward;
-            if step.done() {
+            if step.is_done() {
                 break;
             }
         }
@@ -55,8 +55,8 @@ fn main() -> ! {
 
 /// The first acrobot of a batch with seed 1.
 fn env() -> TimeLimit<Acrobot<Fast>> {
-    let mut env = TimeLimit::of(Acrobot::new(0));
-    env.reset_with(SeedSequence::new(1).child(0).into());
+    let mut env = TimeLimit::with_task_limit(Acrobot::new(0));
+    env.reset_with_seed(SeedSequence::new(1).child(0));
     env
 }
 
@@ -72,7 +72,7 @@ fn compare() -> (usize, usize) {
                 Ok(expected) => equal += usize::from(POLICY.action(&env.observation()) == expected),
                 Err(_) => ties += 1,
             }
-            if env.step(Action::sample(&mut random)).done() {
+            if env.step(Action::sample(&mut random)).is_done() {
                 env.reset();
             }
         }

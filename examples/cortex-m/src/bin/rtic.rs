@@ -61,13 +61,14 @@ mod app {
     /// lock.
     #[task(binds = SysTick, priority = 2, shared = [observation, action], local = [
         // The compiler makes it, seed included.
-        acrobot: TimeLimit<Acrobot<Fast>> = TimeLimit::of(Acrobot::hanging(Pcg64::new(42))),
+        acrobot: TimeLimit<Acrobot<Fast>> =
+            TimeLimit::with_task_limit(Acrobot::hanging(Pcg64::new(42))),
     ])]
     fn machine(mut cx: machine::Context) {
         let action = cx.shared.action.lock(|action| *action);
         let step = cx.local.acrobot.step(action);
         cx.shared.observation.lock(|seen| *seen = step.observation);
-        if step.done() {
+        if step.is_done() {
             println!("the episode ended after {} steps", cx.local.acrobot.elapsed_steps());
             process::exit(0)
         }

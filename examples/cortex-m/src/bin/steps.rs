@@ -30,13 +30,13 @@ fn main() -> ! {
 }
 
 fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
-    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(42));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A>::new(42));
     let mut action_space = Pcg64::new(42);
     let actions = [(); 64].map(|()| Action::sample(&mut action_space));
     let mut actions = actions.iter().copied().cycle();
     let count = counter.count(4000, || {
         let action = actions.next().unwrap_or(Action::Zero);
-        if black_box(&step(&mut acrobot, action)).done() {
+        if black_box(&step(&mut acrobot, action)).is_done() {
             black_box(acrobot.reset());
         }
     });
@@ -49,9 +49,9 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
 #[inline(never)] // otherwise the loop above takes more instructions
 fn stack_of_a_step<A: Arithmetic>() -> Option<usize> {
     // With noise this large the steps take every branch: noise, bounds and goal.
-    let mut acrobot = TimeLimit::of(Acrobot::<A>::new(42));
+    let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A>::new(42));
     let params = Params { torque_noise: A::Scalar::from_f64(20.0), ..*acrobot.params() };
-    acrobot.set_params(params).ok()?;
+    acrobot.inner_mut().set_params(params).ok()?;
     let mut action_space = Pcg64::new(42);
     let mut deepest = 0;
     for _ in 0..1000 {

@@ -41,7 +41,7 @@ fn main() -> anyhow::Result<()> {
         Ok(Action::ALL[number as usize])
     });
     let actions = actions.collect::<anyhow::Result<Vec<_>>>()?;
-    let mut acrobot = Acrobot::<Fast>::with_rng(options.seed.into());
+    let mut acrobot = Acrobot::<Fast>::new(options.seed);
     acrobot.set_params(Params {
         dt: options.dt,
         torque_noise: options.noise,

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use acrobot::physics::Pendulum;
-use acrobot::task::{Seen, Task};
+use acrobot::task::{Pose, Task};
 use acrobot::{Params, Portable};
 
 use crate::robot::Row;
@@ -44,8 +44,8 @@ pub fn costs(params: Params, rows: &[Row]) -> anyhow::Result<Costs> {
     for (i, pair) in rows.windows(2).enumerate() {
         let ((state, torques), (next, _)) = (pair[0], pair[1]);
         let pendulum = Pendulum::<Portable>::new(params, next.into())?;
-        let seen = Seen { state: pendulum.state(), sin_cos: pendulum.sin_cos() };
-        if RealAiGym.reward::<Portable, f64>(&seen, &params, 0.0, false) > 0.0 {
+        let pose = Pose { state: pendulum.state(), sin_cos: pendulum.sin_cos() };
+        if RealAiGym.reward::<Portable, f64>(&pose, &params, 0.0, false) > 0.0 {
             costs[7] += dt;
             costs[0] = costs[0].min((i + 1) as f64 * dt);
         } else {

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::rand_core::Rng;
-use acrobot::task::{ResetBounds, Seen, Swingup, Task};
+use acrobot::task::{Pose, ResetBounds, Swingup, Task};
 use acrobot::{Params, State};
 
 use crate::score::Costs;
@@ -66,21 +66,21 @@ impl Task for RealAiGym {
     }
 
     #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 4] {
-        seen.state.into()
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 4] {
+        pose.state.into()
     }
 
     /// 1 above the line.
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        seen: &Seen<V>,
+        pose: &Pose<V>,
         params: &Params<V>,
         _: V,
         _: V::Mask,
     ) -> V::Single {
         let line = (params.length1 + params.length2) * V::splat(Real::from_f64(0.9));
-        let [_, [_, height]] = seen.positions(params);
-        V::Single::either((height - line).above(Real::ZERO), 1.0, 0.0)
+        let [_, [_, height]] = pose.positions(params);
+        V::Single::select(height.simd_gt(line), V::Single::splat(1.0), V::Single::splat(0.0))
     }
 }
