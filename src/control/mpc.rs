@@ -29,7 +29,8 @@
 //!     ..Params::DEFAULT
 //! };
 //! let params = params.with_inertias_about_joints([0.0319, 0.0509]);
-//! let mut machine = Pendulum::<Damped<Portable>>::new(params, State::HANGING)?;
+//! let start = State { theta1: 0.05, ..State::HANGING };
+//! let mut machine = Pendulum::<Damped<Portable>>::new(params, start)?;
 //! let settings =
 //!     Settings { params: params.cast(), limit: 6.0, counts: [4096, 4096], ticks: 5 };
 //! let mut controller = Controller::<100>::new(settings)?; // plans of 100 decisions
@@ -45,7 +46,7 @@
 //!     }
 //! }
 //! let [theta1, ..] = machine.state().deviation_from(State::UPRIGHT);
-//! assert!(theta1.abs() < 0.1); // rad
+//! assert!(theta1.abs() < 0.1, "{theta1}"); // rad
 //! # Ok::<(), acrobot::Error>(())
 //! ```
 

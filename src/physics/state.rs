@@ -59,7 +59,7 @@ impl<S: Real> State<S> {
     /// ```
     /// use acrobot::State;
     ///
-    /// let leaning = State { theta1: -3.0, ..State::UPRIGHT }; // beyond upright
+    /// let leaning = State::from([-3.0, 0.0, 0.0, 0.0_f64]); // beyond upright
     /// let [theta1, ..] = leaning.deviation_from(State::UPRIGHT);
     /// assert!((theta1 - 0.1416).abs() < 1e-4); // rad
     /// ```

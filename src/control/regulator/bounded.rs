@@ -47,8 +47,8 @@ const FARTHER: f64 = 1.02;
 ///
 /// let params = Params { dt: 0.02, ..Params::DEFAULT };
 /// let regulator = BoundedRegulator::<Portable>::new(params, 10.0)?; // N m
-/// let leaning = |rad| State { theta1: State::<f64>::UPRIGHT.theta1 - rad, ..State::UPRIGHT };
-/// assert!(regulator.holds_from(leaning(0.1)) && !regulator.holds_from(leaning(0.5)));
+/// let leaning = |rad: f64| State { theta1: State::<f64>::UPRIGHT.theta1 - rad, ..State::UPRIGHT };
+/// assert!(regulator.holds_from(leaning(0.05)) && !regulator.holds_from(leaning(0.5)));
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug)]
