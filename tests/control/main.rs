@@ -4,6 +4,7 @@
 mod balance;
 mod estimator;
 mod identify;
+mod motions;
 mod mpc;
 mod planner;
 mod recovery;

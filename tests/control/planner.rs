@@ -250,9 +250,13 @@ fn alone_or_in_a_lane<A: Arithmetic>(
         guesses.push(plan);
     }
     let mut alone = guesses.clone();
-    let costs = alone.iter_mut().map(|plan| planner.improve(start, 20, plan));
+    // Each begins in a state of its own.
+    let starts: Vec<_> = (0..guesses.len())
+        .map(|i| State { theta2: A::Scalar::from_f64(0.2 + 0.01 * i as f64), ..start })
+        .collect();
+    let plans = alone.iter_mut().zip(&starts);
+    let costs = plans.map(|(plan, start)| planner.improve(*start, 20, plan));
     let costs: Vec<_> = costs.collect::<Result<_, _>>()?;
-    let starts = vec![start; guesses.len()];
     for level in LEVELS {
         planner.set_simd_level(level);
         let mut side = guesses.clone();

@@ -53,6 +53,14 @@ impl<S: Real> Knot<S> {
     /// A knot without a torque: for the memory of plans.
     pub const EMPTY: Self = Self::open(S::ZERO);
 
+    /// A knot of a plan that is written down: a state, a torque, N m, and a gain.
+    #[must_use]
+    pub const fn new(state: [S; 4], torque: S, gain: [S; 4]) -> Self {
+        let [theta1, theta2, dtheta1, dtheta2] = state;
+        let state = State { theta1, theta2, dtheta1, dtheta2 };
+        Self { state, gain, ..Self::open(torque) }
+    }
+
     /// A knot with a torque, N m, and no feedback: for plans to
     /// [improve](super::Planner::improve).
     #[must_use]

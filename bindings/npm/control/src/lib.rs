@@ -45,9 +45,7 @@ fn pendulum(mask: u32) -> Result<Pendulum<Damped<Fast>>, Error> {
 
 fn knot() -> Knot<f32> {
     let [a, b, c, d, torque, gain @ ..] = numbers::<9>(0);
-    let mut knot = Knot::open(torque);
-    (knot.state, knot.gain) = ([a, b, c, d].into(), gain);
-    knot
+    Knot::new([a, b, c, d], torque, gain)
 }
 
 /// Writes a result, and returns 0, or the kind of error. JavaScript composes the message, as with

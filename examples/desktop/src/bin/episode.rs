@@ -1,7 +1,8 @@
-//! A planned swing-up, a push, and the recovery, as an animated SVG in real time.
+//! Planned motions as an animated SVG in real time: a swing-up, a push, and the recovery.
 //!
 //! ```text
 //! cargo run --release -p desktop --bin episode -- --out episode.svg
+//! cargo run --release -p desktop --bin episode -- --elbow 1.5  # bends and straightens, no push
 //! ```
 
 use std::path::PathBuf;
@@ -19,6 +20,9 @@ struct Options {
     /// File to write.
     #[arg(long, value_name = "FILE", default_value = "episode.svg")]
     out: PathBuf,
+    /// Balances with this angle of the elbow, rad, and then upright again, instead of the push.
+    #[arg(long, value_name = "RAD", allow_hyphen_values = true)]
+    elbow: Option<f64>,
 }
 
 /// The motor's largest torque, N m, and the part of it that plans use.
@@ -36,11 +40,16 @@ const RING: usize = 8;
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
     let params = Params { dt: 0.02, ..Params::DEFAULT };
-    let mut planner = Planner::<Portable>::new(&Problem::swing_up(params, PLANNED * LIMIT)?)?;
     let mut acrobot = Pendulum::<Portable>::new(params, State::HANGING)?;
     let mut memory = [Knot::EMPTY; PLAN];
     let mut states = Vec::new();
-    for push in [[0.0; 2], PUSH] {
+    let motions = match options.elbow {
+        None => vec![(0.0, [0.0; 2]), (0.0, PUSH)],
+        Some(elbow) => vec![(0.0, [0.0; 2]), (elbow, [0.0; 2]), (0.0, [0.0; 2])],
+    };
+    for (elbow, push) in motions {
+        let mut planner =
+            Planner::<Portable>::new(&Problem::balance(params, PLANNED * LIMIT, elbow)?)?;
         let mut state = acrobot.state();
         state.dtheta1 += push[0];
         state.dtheta2 += push[1];
@@ -53,7 +62,8 @@ fn main() -> anyhow::Result<()> {
             acrobot.step(saturate(plan.torque(step, acrobot.state()), LIMIT))?;
         }
     }
-    let pushed = STEPS / STEPS_PER_FRAME..STEPS / STEPS_PER_FRAME + RING;
+    let ring = if options.elbow.is_none() { RING } else { 0 };
+    let pushed = STEPS / STEPS_PER_FRAME..STEPS / STEPS_PER_FRAME + ring;
     write(&options.out, animation::svg(&states, 2 * STEPS_PER_FRAME as u16, pushed))?;
     println!("{}: {} frames", options.out.display(), states.len());
     Ok(())

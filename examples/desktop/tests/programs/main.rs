@@ -59,6 +59,22 @@ fn the_picture_is_that_of_the_page() {
     assert!(drawn == common::text_of("docs/episode.svg"), "docs/episode.svg differs");
 }
 
+/// The firmware `follow` has this plan.
+#[test]
+fn a_plan_is_written_as_rust_and_c() {
+    let folder = Folder::new("plan");
+    folder.printed("plan");
+    let written = String::from_utf8(folder.read("plan.rs")).unwrap();
+    assert!(written == common::text_of("examples/cortex-m/src/plan.rs"), "plan.rs differs");
+    folder.printed("plan --out plan.h");
+    let c = String::from_utf8(folder.read("plan.h")).unwrap();
+    let numbers = |code: &str| -> Vec<f32> {
+        let words = code.split(|c: char| !(c.is_ascii_digit() || "+-.e".contains(c)));
+        words.filter(|word| word.contains('.')).filter_map(|word| word.parse().ok()).collect()
+    };
+    assert_eq!(numbers(&c), numbers(&written));
+}
+
 /// Each model's row says that the acrobot is upright at the end of each part.
 #[test]
 fn a_real_acrobot_is_held() {
