@@ -58,7 +58,8 @@ impl<S: Real> Given<S> {
         }
         let params: Params<f64> = params.cast();
         // How much a step changes θ̇2, times dt: most where the elbow is straight or folded.
-        let [upper, link2, coupling] = params.inertias();
+        let [link1, tip, link2, coupling] = params.inertias();
+        let upper = link1 + tip;
         let change = [coupling, -coupling].map(|coupling| {
             let between = coupling - params.rotor;
             let inertia = (upper * link2 - between * between) / (upper + link2 + 2.0 * between);
