@@ -20,8 +20,8 @@ impl<S: Modeled> MassMatrix<S> {
         model: &Model<S>,
         sin_cos2: SinCos<S>,
     ) -> Self {
-        let params = &model.params;
-        let [link1, tip, link2, coupling] = S::inertias(params);
+        let (Constants { coupling, link2, .. }, params) = (model.constants, &model.params);
+        let [link1, tip, ..] = S::inertias(params);
         let (coupling_sin, coupling_cos) = (coupling * sin_cos2.0, coupling * sin_cos2.1);
         // U L − c² as a sum in which nothing cancels without a rotor.
         let mut determinant = link1 * link2 + tip * params.inertia2 + coupling_sin * coupling_sin;
