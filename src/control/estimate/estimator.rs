@@ -72,13 +72,13 @@ impl<A: Arithmetic> Estimator<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Pendulum::new`], and a [noise](Noise) is out of its range.
+    /// The errors of [`Pendulum::new`], and a [noise](Noise) is out of its range.
     pub fn new(params: Params<A::Scalar>, noise: Noise<A::Scalar>) -> Result<Self, Error> {
         Self::build(params, noise, [])
     }
 }
 
-/// The parameters that can be estimated: all that a motion tells.
+/// The parameters that can be estimated: all on which a motion depends.
 const PARAMETERS: usize = 10;
 
 /// The standard deviations of parameters, each in its unit: 0 for one that is known.
@@ -120,8 +120,8 @@ impl<A: Arithmetic> ParameterEstimator<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Estimator::new`], and a standard deviation is not finite, below 0, or that of a
-    /// friction or of the rotor in an arithmetic without friction.
+    /// The errors of [`Estimator::new`], and a standard deviation is not finite, below 0, or not 0
+    /// for a friction or the rotor in an arithmetic without friction.
     #[expect(clippy::indexing_slicing, reason = "i is below PARAMETERS")]
     pub fn new(
         params: Params<A::Scalar>,
@@ -273,8 +273,8 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     /// # Errors
     ///
     /// The torque is not finite. Or a derivative or a covariance overflows, or a joint turns by
-    /// more than half a turn in the step, so that its angles do not tell its velocity: then the
-    /// next measurement begins again.
+    /// more than half a turn in the step, so that its velocity does not follow from its angles. Then
+    /// the next measurement begins again.
     pub fn predict(&mut self, torque: A::Scalar) -> Result<(), Error> {
         let mut next = self.model.clone();
         next.step(torque)?;

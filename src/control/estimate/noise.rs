@@ -27,7 +27,8 @@ pub struct Noise<S = f64> {
     pub angle_std: S,
     /// Of the torque that acts, N m; above 0, and so small that a step changes θ̇2 by at most
     /// 1/`dt`. The estimator changes it between a tenth and a hundred times; less if an angle would
-    /// then be anywhere on the circle after a step, or, in `f32`, tell no velocity.
+    /// then be anywhere on the circle after a step, or, in `f32`, if no velocity would follow from
+    /// the angles.
     pub torque_std: S,
 }
 
@@ -73,7 +74,7 @@ impl<S: Real> Given<S> {
         let rounding = S::EPSILON.to_f64();
         // A rounded angle of up to π is not exact, either.
         let of_angle = angle * angle + 16.0 * rounding * rounding;
-        // With a larger variance of the torque, rounding would hide what a measured angle tells, or
+        // With a larger variance of the torque, rounding would hide a measured angle, or
         // a predicted angle could be any of the circle.
         let most = (of_angle / rounding).min(ON_THE_CIRCLE) / (change * change);
         let Units { time, .. } = Units::new(&params, torque);
