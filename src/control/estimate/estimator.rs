@@ -10,6 +10,7 @@
 use core::array::from_fn;
 
 use super::noise::{Given, Noise};
+use super::parameter_std::{PARAMETERS, ParameterStd, estimated};
 use crate::arithmetic::Arithmetic;
 use crate::control::model::LinearModel;
 use crate::control::model::partials::MassMatrix;
@@ -78,43 +79,6 @@ impl<A: Arithmetic> Estimator<A> {
     }
 }
 
-/// The parameters that can be estimated: all on which a motion depends.
-const PARAMETERS: usize = 10;
-
-/// The standard deviations of parameters, each in its unit: 0 for one that is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ParameterStd<S = f64> {
-    /// Of the mass of link 1, kg.
-    pub mass1: S,
-    /// Of the mass of link 2, kg.
-    pub mass2: S,
-    /// Of the length of link 1, m.
-    pub length1: S,
-    /// Of the moment of inertia of link 1, kg m².
-    pub inertia1: S,
-    /// Of the moment of inertia of link 2, kg m².
-    pub inertia2: S,
-    /// Of the viscous friction of joint 1, N m s/rad. This and the following ones must be 0 in an
-    /// arithmetic without friction.
-    pub damping1: S,
-    /// Of the viscous friction of joint 2, N m s/rad.
-    pub damping2: S,
-    /// Of the Coulomb friction of joint 1, N m.
-    pub coulomb1: S,
-    /// Of the Coulomb friction of joint 2, N m.
-    pub coulomb2: S,
-    /// Of the rotor, kg m².
-    pub rotor: S,
-}
-
-/// These among the numbers of the parameters.
-fn estimated<T>(numbers: [T; 21]) -> [T; PARAMETERS] {
-    let [length1, _, mass1, mass2, _, _, inertia1, inertia2, others @ ..] = numbers;
-    let [.., viscous1, viscous2, coulomb1, coulomb2, rotor] = others;
-    [mass1, mass2, length1, inertia1, inertia2, viscous1, viscous2, coulomb1, coulomb2, rotor]
-}
-
 impl<A: Arithmetic> ParameterEstimator<A> {
     /// An estimator of the state and of the parameters that are not known.
     ///
@@ -128,12 +92,7 @@ impl<A: Arithmetic> ParameterEstimator<A> {
         std: ParameterStd<A::Scalar>,
         noise: Noise<A::Scalar>,
     ) -> Result<Self, Error> {
-        let ParameterStd { mass1, mass2, length1, inertia1, inertia2, rotor, .. } = std;
-        let ParameterStd { damping1, damping2, coulomb1, coulomb2, .. } = std;
-        let std = [
-            mass1, mass2, length1, inertia1, inertia2, damping1, damping2, coulomb1, coulomb2,
-            rotor,
-        ];
+        let std = std.numbers();
         let given = estimated(params.numbers());
         for (i, ((name, _), deviation)) in given.into_iter().zip(std).enumerate() {
             let (value, unit) = (deviation.to_f64(), "its unit");
