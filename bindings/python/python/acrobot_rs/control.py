@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import gymnasium
 import numpy as np
@@ -49,9 +49,9 @@ def inverse_dynamics(state: ArrayLike, accelerations: ArrayLike, env: Env = None
     return _call("inverse_dynamics", (2,), env, state=state, accelerations=accelerations)
 
 
-def difference(state: ArrayLike, target: ArrayLike = UPRIGHT) -> Floats:
+def deviation(state: ArrayLike, target: ArrayLike = UPRIGHT) -> Floats:
     """The state minus the target, with differences of angles from -pi to pi."""
-    return _call("difference", (4,), None, state=state, target=target)
+    return _call("deviation", (4,), None, state=state, target=target)
 
 
 def linearize(state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None) -> Pair:
@@ -66,20 +66,20 @@ def linearize_step(state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None) -
     return rows[..., :4, :], rows[..., 4, :, None]
 
 
-def lqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
+def dlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
     """The linear-quadratic regulator of a model of one step.
 
     Q weights the state and R, a number or ``(..., 1, 1)``, the torque. Returns K, ``(..., 1, 4)``,
     of u = -K x, and P, ``(..., 4, 4)``: xᵀ P x is the cost of all steps.
     """
-    rows = _call("lqr", (5, 4), None, A=A, B=B, Q=Q, R=R)
+    rows = _call("dlqr", (5, 4), None, A=A, B=B, Q=Q, R=R)
     return rows[..., :1, :], rows[..., 1:, :]
 
 
 def regulator(
     Q: ArrayLike, R: ArrayLike, state: ArrayLike = UPRIGHT, torque: ArrayLike = 0.0, env: Env = None
 ) -> Pair:
-    """K and P of :func:`lqr` for an acrobot in equilibrium under a torque, N m."""
+    """K and P of :func:`dlqr` for an acrobot in equilibrium under a torque, N m."""
     rows = _call("regulator", (5, 4), env, state=state, Q=Q, torque=torque, R=R)
     return rows[..., :1, :], rows[..., 1:, :]
 
@@ -94,26 +94,59 @@ def simulate(state: ArrayLike, torques: ArrayLike, env: Env = None) -> Floats:
     return _call("simulate", (states, 4), env, state=state, torques=torques)
 
 
+class Region(NamedTuple):
+    """A gain, and the region in which its torque lasts."""
+
+    gain: list[float]  #: K in u = -K x, N m per rad and per rad/s
+    factor: list[list[float]]  #: F: a deviation x is in the region if the norm of F x is below 1
+
+
+class Feedback(NamedTuple):
+    """What holds an equilibrium after a plan. With dry friction there are two gains."""
+
+    target: list[float]
+    torque: float  #: that holds the target, N m
+    moving: Region
+    resting: Region  #: used where the squared norm of its F x is below ``reach``
+    reach: float
+
+
 @dataclass(frozen=True)
 class Plan:
-    """Steps of ``dt``, s. ``plan[10:]`` is the plan after ten steps."""
+    """Steps of ``dt``, s, and the feedback after them. ``plan[10:]`` is the plan after ten steps.
+
+    It is plain data, so it can be pickled and needs no planner.
+    """
 
     states: NDArray[np.float32]  #: before each step, (n, 4)
     torques: NDArray[np.float32]  #: (n,), N m
-    gains: NDArray[np.float32]  #: (n, 4): what deviations from the states add to the torques
+    gains: NDArray[np.float32]  #: (n, 4): K in u = torque - K x for the deviation x from the state
     dt: float
+    after: Feedback
 
     def __getitem__(self, steps: slice) -> Plan:
-        return Plan(self.states[steps], self.torques[steps], self.gains[steps], self.dt)
+        states, torques, gains = self.states[steps], self.torques[steps], self.gains[steps]
+        return replace(self, states=states, torques=torques, gains=gains)
+
+    def torque(self, step: int, state: ArrayLike) -> float:
+        """The torque at a step, counted from 0, or after the plan, N m. It is not limited."""
+        knot = None
+        if integer("step", step, 0, 2**63 - 1) < len(self.torques):
+            knot = [*self.states[step], self.torques[step], *self.gains[step]]
+        return _native.plan_torque(knot, self.after, _four(state))
+
+    def _rows(self) -> list[list[float]]:
+        return np.column_stack([self.states, self.torques, self.gains]).tolist()
 
 
 class Planner:
-    """Plans swing-ups in ``float32``, for a motor of at most ``max_torque``, N m.
+    """Plans motions to an equilibrium in ``float32``, for a motor of at most ``max_torque``, N m.
 
-    ``angles`` to ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust. By default
-    ``torque`` and ``below`` follow from the size of the machine, ``height`` is that of the upright
-    tip, and ``margin`` a tenth of it. No velocity of a plan reaches a bound of the parameters. With
-    ``clamps`` it may: environments clamp it there.
+    The acrobot ends upright, or balances with a bent elbow: ``elbow`` is its theta2, rad. ``q`` to
+    ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust, which has the defaults.
+    ``q`` and ``qf`` have the shape ``(4, 4)``, or are the four numbers of a diagonal. No velocity
+    of a plan reaches a bound of the parameters. With ``velocity_clamp`` it may: environments clamp
+    it there.
     """
 
     def __init__(
@@ -121,23 +154,34 @@ class Planner:
         max_torque: float,
         env: Env = None,
         *,
-        angles: tuple[float, float] = (0.0, 0.0),
-        velocities: tuple[float, float] = (0.0, 0.0),
+        elbow: float = 0.0,
+        q: ArrayLike | None = None,
+        qf: ArrayLike | None = None,
+        angles: tuple[float, float] | None = None,
         torque: float | None = None,
-        torque_change: float = 0.0,
-        power: float = 0.0,
+        torque_change: float | None = None,
+        power: float | None = None,
         below: float | None = None,
         height: float | None = None,
         margin: float | None = None,
-        arrival: float = 20.0,
-        clamps: bool = False,
+        arrival: float | None = None,
+        velocity_clamp: bool = False,
     ) -> None:
+        weights = {
+            **{"q": _weights("q", q), "qf": _weights("qf", qf), "angles": angles},
+            **{"torque": torque, "torque_change": torque_change, "power": power},
+            **{"below": below, "height": height, "margin": margin, "arrival": arrival},
+        }
         acrobot = _acrobot(env)
-        given, weights = [torque, below, height, margin], [torque_change, power, arrival]
-        self._native = _native.Planner(
-            acrobot._native, max_torque, clamps, given, [angles, velocities], weights
-        )
+        native = acrobot._native
+        self._native = _native.Planner(native, max_torque, elbow, velocity_clamp, weights)
+        target, held, moving, resting, reach = self._native.after()
+        self._after = Feedback(target, held, Region(*moving), Region(*resting), reach)
         self._dt = acrobot.dt
+
+    def holds_from(self, state: ArrayLike) -> bool:
+        """Whether the feedback after a plan takes the machine from a state to the target."""
+        return self._native.holds_from(_four(state))
 
     def plan(
         self,
@@ -148,11 +192,11 @@ class Planner:
         seed: int = 0,
         progress: Callable[[int], object] | None = None,
     ) -> Plan:
-        """A plan of at most ``steps``, up to 65,535, after which the regulator holds upright.
+        """A plan of at most ``steps``, up to 65,535, after which its feedback holds the target.
 
-        A seed gives the same plan everywhere. After each 40 tries, which are one ``search`` of
-        Rust's, ``progress`` is called with the number of all so far, and Ctrl-C acts. A
-        ``RuntimeError`` says that no try found a plan.
+        A seed gives the same plan everywhere, also in Rust. After each 40 tries ``progress`` is
+        called with the number of all so far, and Ctrl-C acts. A ``RuntimeError`` says that no try
+        found a plan.
         """
         steps = integer("steps", steps, 0, 2**16 - 1)
         tries, seed = integer("tries", tries, 0, 2**32 - 1), integer("seed", seed, 0, 2**64 - 1)
@@ -160,69 +204,90 @@ class Planner:
 
     def improve(self, state: ArrayLike, plan: Plan, iterations: int = 150) -> tuple[Plan, float]:
         """Improve a plan, from a state on. Return the new one, and what it costs."""
-        rows = np.column_stack([plan.states, plan.torques, plan.gains]).tolist()
         iterations = integer("iterations", iterations, 0, 2**32 - 1)
-        rows, cost = self._native.improve(_four(state), rows, iterations)
+        rows, cost = self._native.improve(_four(state), plan._rows(), iterations)
         return self._plan(rows), cost
 
-    def follow(self, plan: Plan, step: int, state: ArrayLike) -> float:
-        """The torque at a step, N m, not limited: the plan's, or after it the regulator's."""
-        knot = None
-        if step < len(plan.torques):
-            knot = [*plan.states[step], plan.torques[step], *plan.gains[step]]
-        return self._native.follow(knot, _four(state))
-
-    def decide(self, state: ArrayLike) -> float:
-        """The torque without a plan, N m: it pumps energy, and then holds."""
-        return self._native.decide(_four(state))
+    def improve_each(
+        self, states: ArrayLike, plans: Sequence[Plan], iterations: int = 150
+    ) -> tuple[list[Plan], NDArray[np.float32]]:
+        """Improve many plans, each from its state. A cost is infinite where numbers overflow."""
+        shape = len(plans), 4
+        given = numbers("states", f"numbers of shape {shape}", states, shape).tolist()
+        iterations = integer("iterations", iterations, 0, 2**32 - 1)
+        rows = [plan._rows() for plan in plans]
+        rows, costs = self._native.improve_each(given, rows, iterations)
+        return [self._plan(each) for each in rows], np.array(costs, np.float32)
 
     def _plan(self, rows: list[list[float]]) -> Plan:
         array = np.array(rows, np.float32).reshape(-1, 9)
-        return Plan(array[:, :4], array[:, 4], array[:, 5:], self._dt)
+        return Plan(array[:, :4], array[:, 4], array[:, 5:], self._dt, self._after)
+
+
+def _weights(name: str, value: ArrayLike | None) -> list[list[float]] | None:
+    """A matrix, or that with a diagonal."""
+    if value is None:
+        return None
+    rule = "numbers of shape (4, 4) or (4,)"
+    array = numbers(name, rule, value, None)
+    if array.shape not in ((4, 4), (4,)):
+        raise must_be(name, rule, array.shape)
+    return (np.diag(array) if array.ndim == 1 else array).tolist()
 
 
 def _four(state: ArrayLike) -> list[float]:
     return numbers("state", "four numbers", state, (4,)).tolist()
 
 
+class SwingUp:
+    """Swings up without a plan, in ``float32``: pumps energy, and holds once it can."""
+
+    def __init__(self, max_torque: float, env: Env = None) -> None:
+        self._native = _native.SwingUp(_acrobot(env)._native, max_torque)
+
+    def torque(self, state: ArrayLike) -> float:
+        """The torque, N m, at most the largest. Call it at each ``dt``."""
+        return self._native.torque(_four(state))
+
+
 class Estimator:
     """Estimates the state of a machine from its angles alone: an extended Kalman filter.
 
-    The model has the parameters of ``env``. ``angle_noise``, rad, and ``torque_noise``, N m, are
-    standard deviations; an encoder of n counts a turn has 1.8 / n. Parameters that are named in
-    ``deviations``, with their standard deviations, are estimated too: masses, the length and the
-    moment of inertia of link 1, the latter of link 2, frictions and ``ROTOR``.
+    The model has the parameters of ``env``. ``angle_std``, rad, and ``torque_std``, N m, are the
+    standard deviations of the noise; an encoder of n counts a turn has 1.8 / n. Parameters that
+    are named in ``parameter_std``, with their standard deviations, are estimated too: masses,
+    moments of inertia, the length of link 1, frictions and ``ROTOR``.
 
-    In each ``dt`` call :meth:`measure`, decide, and call :meth:`step`.
+    In each ``dt`` call :meth:`correct`, decide, and call :meth:`predict`.
     """
 
     def __init__(
         self,
         env: Env = None,
         *,
-        angle_noise: float,
-        torque_noise: float,
-        deviations: Mapping[str, float] | None = None,
+        angle_std: float,
+        torque_std: float,
+        parameter_std: Mapping[str, float] | None = None,
     ) -> None:
-        named = dict(deviations or {})
-        if unknown := named.keys() - _ESTIMATED:
-            raise must_be("deviations", f"of {', '.join(sorted(_ESTIMATED))}", sorted(unknown))
-        native = _acrobot(env)._native
-        self._native = _native.Estimator(native, angle_noise, torque_noise, list(named.items()))
+        named = parameter_std or {}
+        if unknown := named.keys() - set(_ESTIMATED):
+            raise must_be("parameter_std", f"of {', '.join(_ESTIMATED)}", sorted(unknown))
+        given = [named.get(name, 0.0) for name in _ESTIMATED]
+        self._native = _native.Estimator(_acrobot(env)._native, angle_std, torque_std, given)
 
-    def measure(self, angles: ArrayLike) -> Floats:
-        """Correct the estimate by theta1 and theta2, rad. Return the state."""
+    def correct(self, angles: ArrayLike) -> Floats:
+        """Correct the estimate by measured theta1 and theta2, rad. Return the state."""
         measured = numbers("angles", "two numbers", angles, (2,)).tolist()
-        return np.array(self._native.measure(measured))
+        return np.array(self._native.correct(measured))
 
-    def step(self, torque: float) -> None:
+    def predict(self, torque: float) -> None:
         """Predict the state after one ``dt`` under a torque, N m."""
-        self._native.step(torque)
+        self._native.predict(torque)
 
     @property
-    def deviations(self) -> Floats | None:
+    def state_std(self) -> Floats | None:
         """The standard deviations of the state. ``None`` before a measurement."""
-        found = self._native.deviations()
+        found = self._native.state_std()
         return None if found is None else np.array(found)
 
     @property
@@ -232,22 +297,22 @@ class Estimator:
 
 
 @dataclass(frozen=True)
-class Identified:
+class Fit:
     """What :func:`identify` finds.
 
-    ``values`` and their standard ``errors`` are ten numbers that a motion tells, by name:
-    ``Identified::NAMES`` in Rust has them. ``undetermined`` combinations of them are not told, and
-    ``weakest`` has the parts of the one that is told worst.
+    ``values`` are ten numbers that a motion tells, by name, with ``std_errors``: ``Fit::NAMES`` in
+    Rust has them. ``rank_deficiency`` combinations of them are not determined, and ``weakest`` has
+    the parts of the one that is determined worst.
     """
 
     params: dict[str, Any]  #: arguments of an environment, each a number
     values: dict[str, float]
-    errors: dict[str, float]
+    std_errors: dict[str, float]
     weakest: dict[str, float]
-    undetermined: int
+    rank_deficiency: int
 
 
-def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env) -> Identified:
+def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env) -> Fit:
     """Identify a machine from recordings in which both links move, for ten seconds or so.
 
     A recording has angles, ``(n, 2)``, rad, without jumps by whole turns, and the motor's torques,
@@ -262,9 +327,9 @@ def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env
         rule = f"an array of shape {columns.shape}, as the torques have"
         angle = numbers("angles", rule, angle, columns.shape)
         recordings.append(np.column_stack([angle, columns]).tolist())
-    params, found, undetermined = _native.identify(_acrobot(env)._native, recordings)
-    values, errors, weakest = ({name: row[i] for name, row in found} for i in range(3))
-    return Identified(dict(params), values, errors, weakest, undetermined)
+    params, found, rank_deficiency = _native.identify(_acrobot(env)._native, recordings)
+    values, std_errors, weakest = ({name: row[i] for name, row in found} for i in range(3))
+    return Fit(dict(params), values, std_errors, weakest, rank_deficiency)
 
 
 class Animation:
@@ -297,9 +362,11 @@ class Animation:
 
 
 _GYMNASIUM = AcrobotEnv()
-_ESTIMATED = {"LINK_LENGTH_1", "ROTOR"} | {
-    f"{name}_{link}" for name in ("LINK_MASS", "LINK_MOI", "DAMPING", "COULOMB") for link in (1, 2)
-}
+#: The parameters that an estimator can find, in the order of the native part.
+_ESTIMATED = (
+    *("LINK_MASS_1", "LINK_MASS_2", "LINK_LENGTH_1", "LINK_MOI_1", "LINK_MOI_2"),
+    *("DAMPING_1", "DAMPING_2", "COULOMB_1", "COULOMB_2", "ROTOR"),
+)
 #: The last axes of inputs. Others have 4, and ``torques`` any number.
 _AXES = {"torque": (), "accelerations": (2,), "A": (4, 4), "B": (4, 1), "Q": (4, 4), "R": (1, 1)}
 
