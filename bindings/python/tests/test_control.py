@@ -93,16 +93,19 @@ def test_errors_say_what_is_valid(function, arguments, message):
 
 
 def test_a_plan_swings_an_environment_up_from_a_nearby_state():
-    env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, DAMPING_1=0.1, AVAIL_TORQUE=(-8, 0, 8))
+    friction = {"DAMPING_1": 0.1, "COULOMB_2": 0.02}
+    env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, AVAIL_TORQUE=(-8, 0, 8), **friction)
     planner = control.Planner(6.0, env)
     plan = planner.plan([0, 0, 0, 0], steps=250)
     env.reset(options={"state": [0.05, -0.05, 0.1, 0.1]})
     for step in range(len(plan.torques) + 500):
         env.step([plan.torque(step, env.state)])
     assert np.abs(control.deviation(env.state)).max() < 0.01
-    near = [np.pi - 0.001, 0.0, 0.0, 0.0]
-    assert planner.holds_from(near) and not planner.holds_from(plan.states[0])
-    assert control.SwingUp(6.0, env).torque(near) == plan.torque(len(plan.torques), near)
+    assert not planner.holds_from(plan.states[0])
+    for lean in 1e-3, 3e-5:  # the latter with the gain at rest
+        near = [np.pi - lean, 0.0, 0.0, 0.0]
+        assert planner.holds_from(near)
+        assert control.SwingUp(6.0, env).torque(near) == plan.torque(len(plan.torques), near)
     rest = plan[50:]
     assert rest.torque(1, near) == plan.torque(51, near) and rest.after is plan.after
     start = rest.states[0] + 0.01
@@ -232,7 +235,8 @@ def test_angles_tell_the_state_and_a_mass():
     assert_allclose(estimator.params["LINK_MASS_2"], 1.2, rtol=0.01)
     assert np.sqrt(np.mean(np.square((found - states)[2500:, 2:]))) < 0.1
     assert (estimator.state_std[2:] < 0.1).all()
-    with pytest.raises(ValueError, match="LINK_MASS_2 must be finite and at least 0"):
-        control.Estimator(model, **noise, parameter_std={"LINK_MASS_2": -1.0})
+    for name in control._ESTIMATED:
+        with pytest.raises(ValueError, match=f"{name} must be finite and at least 0"):
+            control.Estimator(model, **noise, parameter_std={name: -1.0})
     with pytest.raises(ValueError, match=r"parameter_std must be of LINK_MASS_1, .* \['dt'\]"):
         control.Estimator(model, **noise, parameter_std={"dt": 0.1})
