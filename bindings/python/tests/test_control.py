@@ -235,7 +235,7 @@ def test_angles_tell_the_state_and_a_mass():
     assert_allclose(estimator.params["LINK_MASS_2"], 1.2, rtol=0.01)
     assert np.sqrt(np.mean(np.square((found - states)[2500:, 2:]))) < 0.1
     assert (estimator.state_std[2:] < 0.1).all()
-    for name in control._ESTIMATED:
+    for name in control.estimate._ESTIMATED:
         with pytest.raises(ValueError, match=f"{name} must be finite and at least 0"):
             control.Estimator(model, **noise, parameter_std={name: -1.0})
     with pytest.raises(ValueError, match=r"parameter_std must be of LINK_MASS_1, .* \['dt'\]"):
