@@ -309,8 +309,8 @@ for_f32_and_f64! {
             self.inertias_by([l1 * l1, lc1 * lc1, lc2 * lc2])
         }
 
-        /// As [`Params::inertias`], given l1², lc1² and lc2². With the first two as one sum they are
-        /// M of the absolute angles where the elbow is straight, except the rotor.
+        /// As [`Params::inertias`], given l1², lc1² and lc2². With the first two as one sum they
+        /// are M of the absolute angles where the elbow is straight, except the rotor.
         pub(crate) const fn inertias_by(
             &self,
             [l1_squared, lc1_squared, lc2_squared]: [S; 3],

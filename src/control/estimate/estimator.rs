@@ -232,8 +232,8 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     /// # Errors
     ///
     /// The torque is not finite. Or a derivative or a covariance overflows, or a joint turns by
-    /// more than half a turn in the step, so that its velocity does not follow from its angles. Then
-    /// the next measurement begins again.
+    /// more than half a turn in the step, so that its velocity does not follow from its angles.
+    /// Then the next measurement begins again.
     pub fn predict(&mut self, torque: A::Scalar) -> Result<(), Error> {
         let mut next = self.model.clone();
         next.step(torque)?;

@@ -40,8 +40,8 @@ pub struct Knot<S> {
     pub state: State<S>,
     /// The torque, N m.
     pub torque: S,
-    /// K in u = torque − K x for the deviation x from the state, N m per rad and per rad/s: the gain
-    /// of a linear-quadratic regulator along the plan.
+    /// K in u = torque − K x for the deviation x from the state, N m per rad and per rad/s: the
+    /// gain of a linear-quadratic regulator along the plan.
     pub gain: [S; 4],
     /// What the last iteration adds to the torque, N m, and what it adds for each N m that the
     /// torque before was changed.

@@ -34,12 +34,12 @@ const ROUGH_DRY: f64 = 0.1;
 /// the machine, so there may be twice as many, and fewer if the machine takes fewer.
 const FINE: [f64; 2] = [50.0, 1000.0];
 const CHANGE: f64 = 0.1;
-/// Where these are longer than the machine's, it begins so much farther from the target, because the
-/// border of what the regulator holds moves with the steps.
+/// Where these are longer than the machine's, it begins so much farther from the target, because
+/// the border of what the regulator holds moves with the steps.
 const FARTHER: f64 = 1.02;
 
-/// A linear-quadratic regulator whose torque is bounded, and which knows from which states it holds:
-/// its region of attraction.
+/// A linear-quadratic regulator whose torque is bounded, and which knows from which states it
+/// holds: its region of attraction.
 ///
 /// ```
 /// use acrobot::control::regulator::BoundedRegulator;

@@ -7,8 +7,8 @@ use crate::physics::State;
 /// State feedback that holds an equilibrium: plain data, which a `const` can have. A
 /// [`BoundedRegulator`](super::BoundedRegulator) has one, and says from which states it holds.
 ///
-/// With dry friction there are two gains. At rest dry friction acts like strong viscous friction, in
-/// motion hardly at all, and the gains for both have opposite signs.
+/// With dry friction there are two gains. At rest dry friction acts like strong viscous friction,
+/// in motion hardly at all, and the gains for both have opposite signs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)] // for bindings/c
