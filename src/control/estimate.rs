@@ -3,5 +3,5 @@
 mod estimator;
 mod noise;
 
-pub use estimator::{Estimator, KalmanFilter, ParameterEstimator, ParameterStd};
-pub use noise::Noise;
+pub use estimator::{Estimator, KalmanFilter, ParameterEstimator};
+pub use noise::{Noise, ParameterStd};

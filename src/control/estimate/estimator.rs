@@ -9,7 +9,7 @@
 
 use core::array::from_fn;
 
-use super::noise::{Given, Noise};
+use super::noise::{Given, Noise, ParameterStd};
 use crate::arithmetic::Arithmetic;
 use crate::control::model::LinearModel;
 use crate::control::model::partials::MassMatrix;
@@ -35,9 +35,35 @@ const IN_A_STEP: f64 = 1e-6;
 const MOST: f64 = 4.0;
 
 /// Estimates the state of a machine.
+///
+/// ```
+/// # use acrobot::{Params, Portable, control::estimate::{Estimator, Noise}};
+/// let params = Params { gravity: 0.0, ..Params::DEFAULT }; // so a straight machine turns evenly
+/// let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
+/// let mut estimator = Estimator::<Portable>::new(params, noise)?;
+/// for tick in 0..50 {
+///     estimator.correct([0.1 * f64::from(tick), 0.0])?; // rad
+///     estimator.predict(0.0)?; // N m
+/// }
+/// assert!((estimator.state().dtheta1 - 0.5).abs() < 1e-3); // rad/s
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 pub type Estimator<A> = KalmanFilter<A, 0>;
 
 /// Estimates the state of a machine and its parameters.
+///
+/// ```
+/// # use acrobot::{Params, Portable, control::estimate::{Noise, ParameterEstimator, ParameterStd}};
+/// let std = ParameterStd { mass2: 0.1, ..ParameterStd::default() }; // kg
+/// let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
+/// let mut estimator = ParameterEstimator::<Portable>::new(Params::DEFAULT, std, noise)?;
+/// for _ in 0..100 {
+///     estimator.correct([-0.3311, 1.5708])?; // rad: link 2 stays bent
+///     estimator.predict(5.097)?; // N m, which hold it
+/// }
+/// assert!((estimator.params().mass2 - 1.1).abs() < 0.01); // kg, 0.1 more than given
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 pub type ParameterEstimator<A> = KalmanFilter<A, PARAMETERS>;
 
 /// An extended Kalman filter for the state of a machine and `K` of its parameters: an [`Estimator`]
@@ -80,33 +106,6 @@ impl<A: Arithmetic> Estimator<A> {
 
 /// The parameters that can be estimated: all that a motion tells.
 const PARAMETERS: usize = 10;
-
-/// The standard deviations of parameters, each in its unit: 0 for one that is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ParameterStd<S = f64> {
-    /// Of the mass of link 1, kg.
-    pub mass1: S,
-    /// Of the mass of link 2, kg.
-    pub mass2: S,
-    /// Of the length of link 1, m.
-    pub length1: S,
-    /// Of the moment of inertia of link 1, kg m².
-    pub inertia1: S,
-    /// Of the moment of inertia of link 2, kg m².
-    pub inertia2: S,
-    /// Of the viscous friction of joint 1, N m s/rad. This and the following ones must be 0 in an
-    /// arithmetic without friction.
-    pub damping1: S,
-    /// Of the viscous friction of joint 2, N m s/rad.
-    pub damping2: S,
-    /// Of the Coulomb friction of joint 1, N m.
-    pub coulomb1: S,
-    /// Of the Coulomb friction of joint 2, N m.
-    pub coulomb2: S,
-    /// Of the rotor, kg m².
-    pub rotor: S,
-}
 
 /// These among the numbers of the parameters.
 fn estimated<T>(numbers: [T; 21]) -> [T; PARAMETERS] {

@@ -1,4 +1,4 @@
-//! The noise of a machine, and what follows from it.
+//! What an estimator is told to doubt: standard deviations, and what follows from them.
 
 use crate::control::units::Units;
 use crate::error::{Error, Range};
@@ -19,6 +19,17 @@ const DRIFT: f64 = 3e-4;
 
 /// The standard deviations of what an [`Estimator`](super::Estimator) measures and of what acts on
 /// the machine.
+///
+/// ```
+/// use acrobot::control::estimate::{Estimator, Noise};
+/// use acrobot::{Params, Portable};
+///
+/// let noise = Noise { angle_std: 1.8 / 4096.0, torque_std: 0.05 }; // rad, N m
+/// let mut estimator = Estimator::<Portable>::new(Params::DEFAULT, noise)?;
+/// estimator.correct([0.1, -0.2])?; // the first measurement
+/// assert!((estimator.state_std().unwrap()[0] - noise.angle_std).abs() < 1e-12); // rad
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Noise<S = f64> {
@@ -29,6 +40,43 @@ pub struct Noise<S = f64> {
     /// 1/`dt`. The estimator changes it between a tenth and a hundred times; less if an angle would
     /// then be anywhere on the circle after a step, or, in `f32`, tell no velocity.
     pub torque_std: S,
+}
+
+/// The standard deviations of parameters, each in its unit: 0 for one that is known.
+///
+/// ```
+/// use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
+/// use acrobot::{Params, Portable, arithmetic::Damped};
+///
+/// let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
+/// let std = ParameterStd { damping1: 0.1, ..ParameterStd::default() }; // N m s/rad
+/// assert!(ParameterEstimator::<Damped<Portable>>::new(Params::DEFAULT, std, noise).is_ok());
+/// assert!(ParameterEstimator::<Portable>::new(Params::DEFAULT, std, noise).is_err());
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ParameterStd<S = f64> {
+    /// Of the mass of link 1, kg.
+    pub mass1: S,
+    /// Of the mass of link 2, kg.
+    pub mass2: S,
+    /// Of the length of link 1, m.
+    pub length1: S,
+    /// Of the moment of inertia of link 1, kg m².
+    pub inertia1: S,
+    /// Of the moment of inertia of link 2, kg m².
+    pub inertia2: S,
+    /// Of the viscous friction of joint 1, N m s/rad. This and the following ones must be 0 in an
+    /// arithmetic without friction.
+    pub damping1: S,
+    /// Of the viscous friction of joint 2, N m s/rad.
+    pub damping2: S,
+    /// Of the Coulomb friction of joint 1, N m.
+    pub coulomb1: S,
+    /// Of the Coulomb friction of joint 2, N m.
+    pub coulomb2: S,
+    /// Of the rotor, kg m².
+    pub rotor: S,
 }
 
 /// What follows from the given parameters and noise.
