@@ -335,6 +335,19 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     }
 
     /// Sets the bounds of initial states for the next resets.
+    ///
+    /// ```
+    /// # use acrobot::Fast;
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::task::ResetBounds;
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// batch.set_reset_bounds(ResetBounds::new(0.3, 0.4)?); // rad and rad/s
+    /// batch.reset();
+    /// assert!((0.3..=0.4).contains(&batch.state(0)?.theta1));
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     pub fn set_reset_bounds(&mut self, bounds: ResetBounds) {
         self.settings.bounds = bounds;
     }
