@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// Why an input was rejected, or why there is no result. `Display` names the value, its unit and the
-/// rule: "dt must be finite and above 0 s, got 0".
+/// Why an input was rejected, or why there is no result. `Display` names the value, its unit and
+/// the rule: "dt must be finite and above 0 s, got 0".
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

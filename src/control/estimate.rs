@@ -2,6 +2,8 @@
 
 mod estimator;
 mod noise;
+mod parameter_std;
 
 pub use estimator::{Estimator, KalmanFilter, ParameterEstimator};
-pub use noise::{Noise, ParameterStd};
+pub use noise::Noise;
+pub use parameter_std::ParameterStd;

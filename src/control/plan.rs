@@ -1,7 +1,7 @@
 //! Motions to an equilibrium: by a plan, or without one.
 //!
 //! A [`Problem`] has a machine, a target and a [`Cost`]. A [`Planner`] solves it. A [`Plan`] is
-//! plain data, which follows without its planner. [`SwingUp`] gets upright without a plan.
+//! plain data, which needs no planner to be followed. [`SwingUp`] gets upright without a plan.
 
 mod cost;
 mod guess;

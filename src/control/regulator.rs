@@ -1,4 +1,4 @@
-//! Linear-quadratic regulators, with a torque of any size and with that of a motor.
+//! Linear-quadratic regulators, with an unlimited torque and with a motor's.
 
 mod bounded;
 mod dlqr;

@@ -20,11 +20,11 @@ pub(in crate::control) struct Units {
 impl Units {
     pub(in crate::control) fn new<S: Real>(params: &Params<S>, limit: S) -> Self {
         let params: Params<f64> = params.cast();
-        let [upper, link2, coupling] = params.inertias();
+        let [link1, tip, link2, coupling] = params.inertias();
         let [moment1, moment2] = params.moments();
         let torque = limit.to_f64();
         let force = ((moment1 + moment2) * params.gravity).abs() + torque;
-        let time = Real::sqrt((upper + link2 + 2.0 * (coupling - params.rotor)) / force);
+        let time = Real::sqrt((link1 + tip + link2 + 2.0 * (coupling - params.rotor)) / force);
         Self { time, torque, force }
     }
 }

@@ -110,6 +110,9 @@ pub trait Modeled: Real {
     #[doc(hidden)]
     fn check(params: &Params<Self>, has_friction: bool) -> Result<(), Error>;
 
+    #[doc(hidden)]
+    fn inertias(params: &Params<Self>) -> [Self; 4];
+
     /// The model of `params`, given l1², lc1² and lc2².
     #[doc(hidden)]
     fn model(
@@ -148,32 +151,28 @@ for_f32_and_f64! {
             form: Form,
             has_friction: bool,
             mut params: Params<S>,
-            [l1_squared, lc1_squared, lc2_squared]: [S; 3],
+            squares: [S; 3],
         ) -> Self {
             params.max_velocity1 = Self::in_f32(params.max_velocity1);
             params.max_velocity2 = Self::in_f32(params.max_velocity2);
-            let Params { inertia1, inertia2, gravity, dt, .. } = params;
-            let (l1, m1, m2) = (params.length1, params.mass1, params.mass2);
-            let lc2 = params.center_of_mass2;
+            let Params { inertia2, gravity, dt, .. } = params;
             let nips = match params.dynamics {
                 Dynamics::Book => 0.0,
                 Dynamics::Nips => 1.0,
             };
             let [moment1, moment2] = params.moments();
-            let coupling = m2 * l1 * lc2;
-            let link2 = m2 * lc2_squared + inertia2;
+            let [link1, tip, link2, coupling] = params.inertias_by(squares);
             let own = match form {
                 Form::Lean => {
-                    let link1 = m1 * lc1_squared + inertia1;
-                    let m2_l1_squared = m2 * l1_squared;
-                    let upper = link1 + m2_l1_squared; // kg m², of the absolute angles
                     // Of the mass matrix where θ2 is ±π/2, kg² m⁴.
-                    let determinant = link1 * link2 + m2_l1_squared * inertia2;
-                    [upper, determinant, 1.0 - nips, 0.0, 0.0]
+                    let determinant = link1 * link2 + tip * inertia2;
+                    [link1 + tip, determinant, 1.0 - nips, 0.0, 0.0]
                 }
                 Form::Gymnasium => {
-                    let arms_squared = l1_squared + lc2_squared;
-                    [m1 * lc1_squared, arms_squared, l1 * lc2, lc2_squared, 2.0 * coupling]
+                    let [l1_squared, lc1_squared, lc2_squared] = squares;
+                    let (arms_squared, arms) =
+                        (l1_squared + lc2_squared, params.length1 * params.center_of_mass2);
+                    [params.mass1 * lc1_squared, arms_squared, arms, lc2_squared, 2.0 * coupling]
                 }
             };
             let constants = Constants {
@@ -195,7 +194,8 @@ for_f32_and_f64! {
         /// friction and C those of Coulomb's. Their sum is convex in cos θ2, so largest where the
         /// elbow is straight or folded. Infinite where viscous friction leaves Coulomb's no rate.
         const fn width(params: &Params<S>) -> S {
-            let [upper, link2, coupling] = params.inertias();
+            let [link1, tip, link2, coupling] = params.inertias();
+            let upper = link1 + tip;
             let &Params { damping1, damping2, coulomb1, coulomb2, .. } = params;
             let mut width = WIDTH as S;
             let mut ends: &[S] = &[coupling - params.rotor, -coupling - params.rotor];
@@ -247,6 +247,11 @@ for_f32_and_f64! {
 
             fn check(params: &Params<Self>, has_friction: bool) -> Result<(), Error> {
                 params.check(has_friction)
+            }
+
+            #[inline(always)]
+            fn inertias(params: &Params<Self>) -> [Self; 4] {
+                params.inertias()
             }
 
             #[inline(always)]

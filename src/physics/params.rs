@@ -280,14 +280,13 @@ for_f32_and_f64! {
                 }
                 (fields, numbers) = (fields_left, left);
             }
-            let (lc1, lc2) = (self.center_of_mass1, self.center_of_mass2);
             let on_the_joint = "above 0 if the centre of mass is on the joint, in";
-            let [upper, link2, coupling] = self.inertias();
+            let [link1, tip, link2, coupling] = self.inertias();
             let most = self.rotor.abs() + coupling;
-            let is_definite = upper * link2 > most * most; // false for NaN
-            let (name, value, rule) = if self.inertia1 + self.mass1 * lc1 * lc1 <= 0.0 {
+            let is_definite = (link1 + tip) * link2 > most * most; // false for NaN
+            let (name, value, rule) = if link1 <= 0.0 {
                 ("inertia1", self.inertia1, on_the_joint)
-            } else if self.inertia2 + self.mass2 * lc2 * lc2 <= 0.0 {
+            } else if link2 <= 0.0 {
                 ("inertia2", self.inertia2, on_the_joint)
             } else if self.rotor != 0.0 && !is_definite {
                 ("rotor", self.rotor, "so small that the mass matrix is positive definite, in")
@@ -303,14 +302,24 @@ for_f32_and_f64! {
             [mass1 * center_of_mass1 + mass2 * length1, mass2 * center_of_mass2]
         }
 
-        /// M of the absolute angles where the elbow is straight, except the rotor: the inertias
-        /// of the whole arm but link 2 turning with it, of link 2 about its joint, and their
-        /// coupling, kg m².
-        pub(crate) const fn inertias(&self) -> [S; 3] {
-            let (lc1, lc2, l1) = (self.center_of_mass1, self.center_of_mass2, self.length1);
-            let link1 = self.mass1 * lc1 * lc1 + self.inertia1;
-            let link2 = self.mass2 * lc2 * lc2 + self.inertia2;
-            [link1 + self.mass2 * l1 * l1, link2, self.mass2 * l1 * lc2]
+        /// The inertias of link 1 about the fixed joint, of link 2's mass at its end, and of link 2
+        /// about its joint, and the coupling of both links, kg m²: see [`Params::inertias_by`].
+        pub(crate) const fn inertias(&self) -> [S; 4] {
+            let (l1, lc1, lc2) = (self.length1, self.center_of_mass1, self.center_of_mass2);
+            self.inertias_by([l1 * l1, lc1 * lc1, lc2 * lc2])
+        }
+
+        /// As [`Params::inertias`], given l1², lc1² and lc2². With the first two as one sum they
+        /// are M of the absolute angles where the elbow is straight, except the rotor.
+        pub(crate) const fn inertias_by(
+            &self,
+            [l1_squared, lc1_squared, lc2_squared]: [S; 3],
+        ) -> [S; 4] {
+            let Self { mass1, mass2, inertia1, inertia2, .. } = *self;
+            let link1 = mass1 * lc1_squared + inertia1;
+            let link2 = mass2 * lc2_squared + inertia2;
+            let coupling = mass2 * self.length1 * self.center_of_mass2;
+            [link1, mass2 * l1_squared, link2, coupling]
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::arithmetic::{Arithmetic, check_params, default_model, model};
 use super::equations;
 use super::geometry;
-use super::model::{Defaults, Model};
+use super::model::{Defaults, Model, Modeled as _};
 use super::params::Params;
 use super::state::State;
 use super::step::step;
@@ -207,11 +207,10 @@ impl<A: Arithmetic> Pendulum<A> {
     pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
         let [_, (_, cos2)] = self.sin_cos();
         let Model { params, constants } = &self.model;
-        let (l1, lc1) = (params.length1, params.center_of_mass1);
-        let upper = params.mass1 * (lc1 * lc1) + params.inertia1 + params.mass2 * (l1 * l1);
+        let [link1, tip, ..] = A::Scalar::inertias(params);
         let coupling = constants.coupling * cos2 - params.rotor;
         let d2 = constants.link2 + coupling;
-        [[upper + coupling + d2, d2], [d2, constants.link2]]
+        [[link1 + tip + coupling + d2, d2], [d2, constants.link2]]
     }
 
     /// Adds impulses to both joints, N m s: θ̇ changes by M⁻¹ times them, without a bound. A hand

@@ -214,9 +214,8 @@ impl<S: Modeled> Draws<S> {
         // about its centre of mass. Rounding changes it by less than 8 machine epsilons times
         // (s + k)².
         let [least, most]: [Params<f64>; 2] = [low.cast(), high.cast()];
-        let lc1 = least.center_of_mass1;
-        let s = Real::sqrt((least.inertia1 + least.mass1 * lc1 * lc1) * least.inertia2);
-        let k = most.mass2 * most.length1 * most.center_of_mass2;
+        let ([link1, ..], [.., k]) = (least.inertias(), most.inertias());
+        let s = Real::sqrt(link1 * least.inertia2);
         let r = least.rotor.abs().max(most.rotor.abs());
         let is_below = r + 16.0 * S::EPSILON.to_f64() * (s + k) < s; // false for NaN
         if low != high && r > 0.0 && !is_below {

@@ -53,7 +53,7 @@ fn a_target_is_an_equilibrium() {
     );
     let error = |problem: Problem| Planner::<Portable>::new(&problem).unwrap_err().to_string();
     let bent = Problem::balance(params, 3.0, 1.5).unwrap();
-    let rule = "the largest torque without that of the target must be finite and above 0 N m, got";
+    let rule = "the largest torque minus the target's must be finite and above 0 N m, got";
     assert!(error(bent).starts_with(rule), "{}", error(bent));
     let moving = Problem { torque: 0.0, limit: 10.0, ..bent };
     assert!(error(moving).starts_with("the state must be in equilibrium"));

@@ -208,8 +208,8 @@ fn plans_side_by_side_have_the_bits_of_one_alone() -> Result<(), Box<dyn std::er
     alone_or_in_a_lane::<Damped<Portable>>(Params::SWINGUP)
 }
 
-/// One order of tries, one result: in memory of the caller and over lanes, which leave the generator
-/// alike.
+/// One order of tries, one result: in memory of the caller and over lanes, which leave the
+/// generator alike.
 #[test]
 fn a_seed_has_one_plan() -> Result<(), Box<dyn std::error::Error>> {
     let params = Params { dt: 0.04, ..Params::DEFAULT };

@@ -4,8 +4,8 @@ import type { Params, Seed, State } from "./index.js";
 export type Matrix = ArrayLike<ArrayLike<number>>;
 
 /**
- * A model in continuous time, ẋ = A x + B u: x is the deviation from a state [θ1, θ2, θ̇1, θ̇2], rad
- * and rad/s, and u that from a torque, N m.
+ * A model in continuous time, ẋ = A x + B u: x is the deviation from a state [θ1, θ2, θ̇1, θ̇2],
+ * rad and rad/s, and u that from a torque, N m.
  */
 export interface LinearModel {
   /** A by rows: the derivatives of the rates by the state. */

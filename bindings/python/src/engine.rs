@@ -300,7 +300,7 @@ fn read<T: Copy + std::fmt::Display, U>(
 
 pub fn out_of_memory(error: Error) -> PyErr {
     match error {
-        Error::OutOfMemory { len } => {
+        Error::OutOfMemory { len, .. } => {
             let rule = "so few that they fit into memory";
             PyMemoryError::new_err(must_be("num_envs", rule, len))
         }

@@ -42,7 +42,7 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::control::{Estimator, Planner, compute, identify};
+    use super::control::{Estimator, Planner, SwingUp, compute, identify, plan_torque};
     #[pymodule_export]
     use super::single::Acrobot;
     use super::*;

@@ -1,5 +1,7 @@
 """`acrobot_rs.control` has the bits of environments, and agrees with other people's programs."""
 
+import copy
+import pickle
 import signal
 from zlib import crc32
 
@@ -41,10 +43,10 @@ def test_regulators_are_those_of_python_control_and_scipy():
         A, B = control.linearize_step(rng.uniform(-1, 1, 4), 0.5, ENV)
         factor = rng.normal(size=(4, 4))
         Q, R = factor @ factor.T + ONE, rng.uniform(0.1, 1)
-        K, P = control.lqr(A, B, Q, R)
+        K, P = control.dlqr(A, B, Q, R)
         for ours, theirs in zip((K, P), python_control.dlqr(A, B, Q, R, method="scipy")):
             agree(ours, theirs)
-    assert (control.lqr(A, B[:, 0], Q, [[R]])[0] == K).all()
+    assert (control.dlqr(A, B[:, 0], Q, [[R]])[0] == K).all()
     A, B = control.linearize_step(control.UPRIGHT, 0.0, ENV)
     agree(control.regulator(ONE, 0.1, env=ENV)[0], python_control.dlqr(A, B, ONE, 0.1)[0])
 
@@ -82,6 +84,7 @@ def test_motions_obey_mechanics():
         ("simulate", ([0.0] * 4, [np.inf]), "torque must be a finite number of N m, got inf"),
         ("regulator", (ONE, 1, [1, 0, 0, 0]), "the state must be in equilibrium"),
         ("Planner", (0,), "the largest torque must be finite and above 0 N m, got 0"),
+        ("SwingUp", (0,), "the largest torque must be finite and above 0 N m, got 0"),
     ],
 )
 def test_errors_say_what_is_valid(function, arguments, message):
@@ -90,35 +93,89 @@ def test_errors_say_what_is_valid(function, arguments, message):
 
 
 def test_a_plan_swings_an_environment_up_from_a_nearby_state():
-    env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, DAMPING_1=0.1, AVAIL_TORQUE=(-8, 0, 8))
+    friction = {"DAMPING_1": 0.1, "COULOMB_2": 0.02}
+    env = acrobot_rs.AcrobotContinuousEnv(dt=0.02, AVAIL_TORQUE=(-8, 0, 8), **friction)
     planner = control.Planner(6.0, env)
     plan = planner.plan([0, 0, 0, 0], steps=250)
     env.reset(options={"state": [0.05, -0.05, 0.1, 0.1]})
     for step in range(len(plan.torques) + 500):
-        env.step([planner.follow(plan, step, env.state)])
-    assert np.abs(control.difference(env.state)).max() < 0.01
-    near = [np.pi - 0.001, 0.0, 0.0, 0.0]
-    assert planner.decide(near) == planner.follow(plan, step, near)
+        env.step([plan.torque(step, env.state)])
+    assert np.abs(control.deviation(env.state)).max() < 0.01
+    assert not planner.holds_from(plan.states[0])
+    for lean in 1e-3, 3e-5:  # the latter with the gain at rest
+        near = [np.pi - lean, 0.0, 0.0, 0.0]
+        assert planner.holds_from(near)
+        assert control.SwingUp(6.0, env).torque(near) == plan.torque(len(plan.torques), near)
     rest = plan[50:]
-    costs = [planner.improve(rest.states[0] + 0.01, rest, n)[1] for n in (0, 1, 5)]
+    assert rest.torque(1, near) == plan.torque(51, near) and rest.after is plan.after
+    start = rest.states[0] + 0.01
+    costs = [planner.improve(start, rest, n)[1] for n in (0, 1, 5)]
     assert costs[0] > costs[1] > costs[2]
+    improved, cost = planner.improve(start, rest, 5)
+    plans, costs = planner.improve_each([start, plan.states[0]], [rest, plan], 5)
+    assert (plans[0].gains == improved.gains).all() and costs[0] == cost
+    with pytest.raises(ValueError, match=r"states must be numbers of shape \(1, 4\), got"):
+        planner.improve_each([start, start], [plan])
+
+
+def test_a_plan_ends_with_a_bent_elbow():
+    env = acrobot_rs.AcrobotEnv(dt=0.02)
+    plan = control.Planner(12.0, env, elbow=1.0).plan([0, 0, 0, 0], steps=300)
+    plan = copy.deepcopy(pickle.loads(pickle.dumps(plan)))
+    state = plan.states[0]
+    for step in range(len(plan.torques) + 300):
+        torque = np.clip(plan.torque(step, state), -12, 12)
+        state = control.simulate(state, [torque], env)[-1]
+    assert np.abs(control.deviation(state, plan.after.target)).max() < 0.01
+    assert plan.after.target[1] == 1.0
+    with pytest.raises(ValueError, match="step must be an integer from 0 .* got -1"):
+        plan.torque(-1, state)
+    with pytest.raises(ValueError, match="dtheta1 must be a finite number of rad/s, got inf"):
+        plan.torque(0, [0, 0, 1e300, 0])
 
 
 def test_a_plan_has_the_bits_of_rust():
+    """The digest of `tests/bits/src/plan.rs`, of a plan and of an acrobot that follows it."""
+    params = {"dt": 0.01, "AVAIL_TORQUE": (-10, 0, 10)}
+    envs = acrobot_rs.AcrobotContinuousVectorEnv(1, **params)
+    env = acrobot_rs.AcrobotEnv(**params)
+    env.reset(seed=0)
+    plan = control.Planner(7, env).plan([0] * 4, steps=1100)
+    state, words = env.state, [1]
+    for step, (before, gain) in enumerate(zip(plan.states, plan.gains)):
+        envs.reset(options={"state": state})  # it does not end beyond the target height
+        envs.step([[plan.torque(step, state)]])
+        [state] = envs.state
+        numbers = np.concatenate([before, state, gain, plan.torques[[step] * 4]])
+        words += [1, *numbers.view(np.uint32).tolist()]
+    digest = 0xCBF29CE484222325
+    for word in words:
+        digest = (digest ^ word) * 0x100000001B3 % 2**64
+    assert digest == 0x875C0DC9E0FB48AB
+
+
+def test_weights_and_portions_of_tries_have_the_effect_of_rusts():
     env = acrobot_rs.AcrobotEnv(dt=0.02, DAMPING_1=0.1, MAX_VEL_1=4)
     weights = {"torque": 0.2, "torque_change": 0.1, "power": 0.3, "below": 3, "height": 1.9}
-    weights |= {"margin": 0.3, "arrival": 10, "angles": (0.1, 0.2), "velocities": (0.01, 0.02)}
-    planner = control.Planner(12, env, clamps=True, **weights)
-    plan = planner.plan([0.1, 0.2, 0.3, 0.4], steps=300, seed=5)
+    weights |= {"margin": 0.3, "arrival": 10, "angles": (0.1, 0.2), "q": [0, 0, 0.01, 0.02]}
+    weights |= {"qf": np.diag([0.3, 0, 0, 0])}
+    planner = control.Planner(12, env, velocity_clamp=True, **weights)
+    calls = []
+    plan = planner.plan([0.1, 0.2, 0.3, 0.4], steps=130, seed=2, progress=calls.append)
+    assert calls == [40], "the second portion has it"
     digests = [crc32(each.tobytes()) for each in (plan.states, plan.torques, plan.gains)]
-    assert digests == [2918004515, 4238371150, 2504277938]  # of Rust's `search`
+    assert digests == [3593896818, 2751133738, 2782251845]  # of Rust's `plan`
+    with pytest.raises(ValueError, match=r"q must be numbers of shape .* or \(4,\), got \(3,\)"):
+        control.Planner(1, q=[1, 1, 1])
+    with pytest.raises(ValueError, match="qf must be positive semidefinite"):
+        control.Planner(1, qf=[1, 1, 1, -1])
 
 
 def test_a_search_can_be_interrupted_or_find_no_plan():
     planner, calls = control.Planner(1e-3), []
     with pytest.raises(ValueError, match="steps must be an integer from 0 to 65535, got 65536"):
         planner.plan([0, 0, 0, 0], steps=2**16)
-    with pytest.raises(RuntimeError, match="found no plan that ends upright in 41 tries"):
+    with pytest.raises(RuntimeError, match="no plan ends upright in 41 tries"):
         planner.plan([0, 0, 0, 0], steps=50, tries=41, progress=calls.append)
     assert calls == [40, 41]
     signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background of a shell
@@ -130,7 +187,7 @@ def test_a_search_can_be_interrupted_or_find_no_plan():
 def test_an_animation_is_in_real_time(dt, frames, tmp_path):
     """Three turns in 3 s, which pass the jump of the angle."""
     states = np.outer(np.arange(0, 3 + dt / 2, dt) * 2 * np.pi, [1, 0, 0, 0])
-    animation = control.Animation(control.difference(states), acrobot_rs.AcrobotEnv(dt=dt))
+    animation = control.Animation(control.deviation(states), acrobot_rs.AcrobotEnv(dt=dt))
     animation.save(tmp_path / "turns.svg")
     text = (tmp_path / "turns.svg").read_text()
     values = np.float64(text.split('values="')[1].split('"')[0].split(";"))
@@ -152,7 +209,7 @@ def test_a_recording_tells_the_machine():
     angles = np.unwrap(angles, axis=0)
     wrong = acrobot_rs.AcrobotSwingupEnv(dt=0.002)
     found = control.identify([angles], [torques], wrong)
-    assert found.undetermined == 0 and found.errors["mass22"] < 0.01
+    assert found.rank_deficiency == 0 and found.std_errors["mass22"] < 0.01
     assert_allclose(found.values["coulomb1"], 0.1, rtol=0.1)
     again = acrobot_rs.AcrobotSwingupEnv(**found.params)
     at = [0.3, 1.0, 0.0, 0.0]
@@ -164,21 +221,22 @@ def test_a_recording_tells_the_machine():
 def test_angles_tell_the_state_and_a_mass():
     _, states, angles, torques = shaken()
     model = acrobot_rs.AcrobotSwingupEnv(dt=0.002, COULOMB_1=0.1)
-    noise = {"angle_noise": 1.8 / 4096, "torque_noise": 0.05}
+    noise = {"angle_std": 1.8 / 4096, "torque_std": 0.05}
     known = control.Estimator(model, **noise)
-    estimator = control.Estimator(model, **noise, deviations={"LINK_MASS_2": 0.3})
-    assert estimator.deviations is None
+    estimator = control.Estimator(model, **noise, parameter_std={"LINK_MASS_2": 0.3})
+    assert estimator.state_std is None
     found = []
     for measured, torque in zip(angles, torques):
-        found.append(estimator.measure(measured))
-        known.measure(measured)
-        estimator.step(torque)
-        known.step(torque)
+        found.append(estimator.correct(measured))
+        known.correct(measured)
+        estimator.predict(torque)
+        known.predict(torque)
     assert known.params["LINK_MASS_2"] == 1.0
     assert_allclose(estimator.params["LINK_MASS_2"], 1.2, rtol=0.01)
     assert np.sqrt(np.mean(np.square((found - states)[2500:, 2:]))) < 0.1
-    assert (estimator.deviations[2:] < 0.1).all()
-    with pytest.raises(ValueError, match="LINK_MASS_2 must be finite and at least 0"):
-        control.Estimator(model, **noise, deviations={"LINK_MASS_2": -1.0})
-    with pytest.raises(ValueError, match="deviations must be of COULOMB_1, .*, got \\['dt'\\]"):
-        control.Estimator(model, **noise, deviations={"dt": 0.1})
+    assert (estimator.state_std[2:] < 0.1).all()
+    for name in control.estimate._ESTIMATED:
+        with pytest.raises(ValueError, match=f"{name} must be finite and at least 0"):
+            control.Estimator(model, **noise, parameter_std={name: -1.0})
+    with pytest.raises(ValueError, match=r"parameter_std must be of LINK_MASS_1, .* \['dt'\]"):
+        control.Estimator(model, **noise, parameter_std={"dt": 0.1})

@@ -3,6 +3,7 @@
 #![no_std]
 
 pub mod counter;
+pub mod plan;
 #[cfg(target_arch = "arm")]
 pub mod ram;
 pub mod stack;

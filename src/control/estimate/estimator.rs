@@ -9,7 +9,8 @@
 
 use core::array::from_fn;
 
-use super::noise::{Given, Noise, ParameterStd};
+use super::noise::{Given, Noise};
+use super::parameter_std::{PARAMETERS, ParameterStd, estimated};
 use crate::arithmetic::Arithmetic;
 use crate::control::model::LinearModel;
 use crate::control::model::partials::MassMatrix;
@@ -37,7 +38,8 @@ const MOST: f64 = 4.0;
 /// Estimates the state of a machine.
 ///
 /// ```
-/// # use acrobot::{Params, Portable, control::estimate::{Estimator, Noise}};
+/// # use acrobot::control::estimate::{Estimator, Noise};
+/// # use acrobot::{Params, Portable};
 /// let params = Params { gravity: 0.0, ..Params::DEFAULT }; // so a straight machine turns evenly
 /// let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
 /// let mut estimator = Estimator::<Portable>::new(params, noise)?;
@@ -53,7 +55,8 @@ pub type Estimator<A> = KalmanFilter<A, 0>;
 /// Estimates the state of a machine and its parameters.
 ///
 /// ```
-/// # use acrobot::{Params, Portable, control::estimate::{Noise, ParameterEstimator, ParameterStd}};
+/// # use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
+/// # use acrobot::{Params, Portable};
 /// let std = ParameterStd { mass2: 0.1, ..ParameterStd::default() }; // kg
 /// let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
 /// let mut estimator = ParameterEstimator::<Portable>::new(Params::DEFAULT, std, noise)?;
@@ -98,20 +101,10 @@ impl<A: Arithmetic> Estimator<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Pendulum::new`], and a [noise](Noise) is out of its range.
+    /// The errors of [`Pendulum::new`], and a [noise](Noise) is out of its range.
     pub fn new(params: Params<A::Scalar>, noise: Noise<A::Scalar>) -> Result<Self, Error> {
         Self::build(params, noise, [])
     }
-}
-
-/// The parameters that can be estimated: all that a motion tells.
-const PARAMETERS: usize = 10;
-
-/// These among the numbers of the parameters.
-fn estimated<T>(numbers: [T; 21]) -> [T; PARAMETERS] {
-    let [length1, _, mass1, mass2, _, _, inertia1, inertia2, others @ ..] = numbers;
-    let [.., viscous1, viscous2, coulomb1, coulomb2, rotor] = others;
-    [mass1, mass2, length1, inertia1, inertia2, viscous1, viscous2, coulomb1, coulomb2, rotor]
 }
 
 impl<A: Arithmetic> ParameterEstimator<A> {
@@ -119,20 +112,15 @@ impl<A: Arithmetic> ParameterEstimator<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Estimator::new`], and a standard deviation is not finite, below 0, or that of a
-    /// friction or of the rotor in an arithmetic without friction.
+    /// The errors of [`Estimator::new`], and a standard deviation is not finite, below 0, or not 0
+    /// for a friction or the rotor in an arithmetic without friction.
     #[expect(clippy::indexing_slicing, reason = "i is below PARAMETERS")]
     pub fn new(
         params: Params<A::Scalar>,
         std: ParameterStd<A::Scalar>,
         noise: Noise<A::Scalar>,
     ) -> Result<Self, Error> {
-        let ParameterStd { mass1, mass2, length1, inertia1, inertia2, rotor, .. } = std;
-        let ParameterStd { damping1, damping2, coulomb1, coulomb2, .. } = std;
-        let std = [
-            mass1, mass2, length1, inertia1, inertia2, damping1, damping2, coulomb1, coulomb2,
-            rotor,
-        ];
+        let std = std.numbers();
         let given = estimated(params.numbers());
         for (i, ((name, _), deviation)) in given.into_iter().zip(std).enumerate() {
             let (value, unit) = (deviation.to_f64(), "its unit");
@@ -272,8 +260,8 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     /// # Errors
     ///
     /// The torque is not finite. Or a derivative or a covariance overflows, or a joint turns by
-    /// more than half a turn in the step, so that its angles do not tell its velocity: then the
-    /// next measurement begins again.
+    /// more than half a turn in the step, so that its velocity does not follow from its angles.
+    /// Then the next measurement begins again.
     pub fn predict(&mut self, torque: A::Scalar) -> Result<(), Error> {
         let mut next = self.model.clone();
         next.step(torque)?;

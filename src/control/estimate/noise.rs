@@ -1,4 +1,4 @@
-//! What an estimator is told to doubt: standard deviations, and what follows from them.
+//! The noise of a machine, and what follows from it.
 
 use crate::control::units::Units;
 use crate::error::{Error, Range};
@@ -38,45 +38,9 @@ pub struct Noise<S = f64> {
     pub angle_std: S,
     /// Of the torque that acts, N m; above 0, and so small that a step changes θ̇2 by at most
     /// 1/`dt`. The estimator changes it between a tenth and a hundred times; less if an angle would
-    /// then be anywhere on the circle after a step, or, in `f32`, tell no velocity.
+    /// then be anywhere on the circle after a step, or, in `f32`, if no velocity would follow from
+    /// the angles.
     pub torque_std: S,
-}
-
-/// The standard deviations of parameters, each in its unit: 0 for one that is known.
-///
-/// ```
-/// use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
-/// use acrobot::{Params, Portable, arithmetic::Damped};
-///
-/// let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
-/// let std = ParameterStd { damping1: 0.1, ..ParameterStd::default() }; // N m s/rad
-/// assert!(ParameterEstimator::<Damped<Portable>>::new(Params::DEFAULT, std, noise).is_ok());
-/// assert!(ParameterEstimator::<Portable>::new(Params::DEFAULT, std, noise).is_err());
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ParameterStd<S = f64> {
-    /// Of the mass of link 1, kg.
-    pub mass1: S,
-    /// Of the mass of link 2, kg.
-    pub mass2: S,
-    /// Of the length of link 1, m.
-    pub length1: S,
-    /// Of the moment of inertia of link 1, kg m².
-    pub inertia1: S,
-    /// Of the moment of inertia of link 2, kg m².
-    pub inertia2: S,
-    /// Of the viscous friction of joint 1, N m s/rad. This and the following ones must be 0 in an
-    /// arithmetic without friction.
-    pub damping1: S,
-    /// Of the viscous friction of joint 2, N m s/rad.
-    pub damping2: S,
-    /// Of the Coulomb friction of joint 1, N m.
-    pub coulomb1: S,
-    /// Of the Coulomb friction of joint 2, N m.
-    pub coulomb2: S,
-    /// Of the rotor, kg m².
-    pub rotor: S,
 }
 
 /// What follows from the given parameters and noise.
@@ -106,7 +70,8 @@ impl<S: Real> Given<S> {
         }
         let params: Params<f64> = params.cast();
         // How much a step changes θ̇2, times dt: most where the elbow is straight or folded.
-        let [upper, link2, coupling] = params.inertias();
+        let [link1, tip, link2, coupling] = params.inertias();
+        let upper = link1 + tip;
         let change = [coupling, -coupling].map(|coupling| {
             let between = coupling - params.rotor;
             let inertia = (upper * link2 - between * between) / (upper + link2 + 2.0 * between);
@@ -120,7 +85,7 @@ impl<S: Real> Given<S> {
         let rounding = S::EPSILON.to_f64();
         // A rounded angle of up to π is not exact, either.
         let of_angle = angle * angle + 16.0 * rounding * rounding;
-        // With a larger variance of the torque, rounding would hide what a measured angle tells, or
+        // With a larger variance of the torque, rounding would hide a measured angle, or
         // a predicted angle could be any of the circle.
         let most = (of_angle / rounding).min(ON_THE_CIRCLE) / (change * change);
         let Units { time, .. } = Units::new(&params, torque);

@@ -11,7 +11,7 @@ use crate::math::Real;
 use crate::math::matrix::check_finite;
 use crate::physics::{Params, WIDTH};
 
-/// The numbers that a motion tells.
+/// The numbers on which a motion depends.
 const N: usize = 10;
 /// Those from here on are friction.
 const FRICTION: usize = 6;
@@ -263,7 +263,7 @@ fn diagonalize(m: &mut [[f64; N]; N]) -> [[f64; N]; N] {
     vectors
 }
 
-/// The fit of a [`Regression`], in numbers that a motion tells.
+/// The fit of a [`Regression`], in numbers on which a motion depends.
 ///
 /// ```
 /// # use acrobot::{Params, control::identify::Fit};

@@ -42,7 +42,7 @@ const FIRST: (usize, f64) = (3, 0.03);
 ///
 /// # Errors
 ///
-/// Those of [`Regression::add`] and of [`Fit::params`].
+/// The errors of [`Regression::add`] and of [`Fit::params`].
 pub fn identify(recordings: &[&[Sample]], given: Params) -> Result<(Params, Fit), Error> {
     let fit = |part: usize, half, window| {
         let mut regression = Regression::EMPTY;
@@ -101,7 +101,7 @@ fn in_steps(params: &Params, (least, time): (usize, f64)) -> usize {
 ///
 /// # Errors
 ///
-/// Those of [`Pendulum::new`], and a recorded or a predicted number is not finite.
+/// The errors of [`Pendulum::new`], and a recorded or a predicted number is not finite.
 pub fn prediction_error(
     params: Params,
     recording: &[Sample],

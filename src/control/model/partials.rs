@@ -2,7 +2,7 @@
 
 use crate::arithmetic::Arithmetic;
 use crate::math::{Real, SinCos};
-use crate::physics::{Constants, Model, directions, friction};
+use crate::physics::{Constants, Model, Modeled, directions, friction};
 
 /// M of the absolute angles α = θ1 and β = θ1 + θ2, with the rows \[upper, between\] and
 /// \[between, link2\], kg m².
@@ -14,28 +14,23 @@ pub(in crate::control) struct MassMatrix<S> {
     inverse: S,
 }
 
-impl<S: Real> MassMatrix<S> {
+impl<S: Modeled> MassMatrix<S> {
     #[inline(always)]
     pub(in crate::control) fn new<A: Arithmetic<Scalar = S>>(
         model: &Model<S>,
         sin_cos2: SinCos<S>,
     ) -> Self {
-        let Constants { coupling, link2, .. } = model.constants;
-        let params = &model.params;
-        let (l1, lc1) = (params.length1, params.center_of_mass1);
-        let link1 = params.mass1 * (lc1 * lc1) + params.inertia1;
-        let m2_l1_squared = params.mass2 * (l1 * l1);
-        let upper = link1 + m2_l1_squared;
+        let (Constants { coupling, link2, .. }, params) = (model.constants, &model.params);
+        let [link1, tip, ..] = S::inertias(params);
         let (coupling_sin, coupling_cos) = (coupling * sin_cos2.0, coupling * sin_cos2.1);
         // U L − c² as a sum in which nothing cancels without a rotor.
-        let mut determinant =
-            link1 * link2 + m2_l1_squared * params.inertia2 + coupling_sin * coupling_sin;
+        let mut determinant = link1 * link2 + tip * params.inertia2 + coupling_sin * coupling_sin;
         let mut between = coupling_cos;
         if A::HAS_FRICTION {
             between = coupling_cos - params.rotor;
             determinant = determinant + params.rotor * (coupling_cos + between);
         }
-        Self { upper, between, link2, inverse: S::from_f64(1.0) / determinant }
+        Self { upper: link1 + tip, between, link2, inverse: S::from_f64(1.0) / determinant }
     }
 
     /// \[θ̈1, θ̈2\] by forces on α and β, N m.

@@ -48,7 +48,7 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`linearize`](Self::linearize).
+    /// The errors of [`linearize`](Self::linearize).
     #[inline(never)] // saves flash
     pub fn linearize_step(&self, torque: A::Scalar) -> Result<StepModel<A::Scalar>, Error> {
         check_torque(torque)?;

@@ -14,7 +14,8 @@ pub(super) type Arithmetic = Damped<Fast>;
 /// Standard deviations: of an angle, in counts, and of the torque, as a part of the largest.
 const ANGLE: f32 = 0.29;
 const TORQUE: f32 = 0.01;
-/// Those of masses and inertias, as a part of them, and of frictions, as a part of the torque.
+/// Standard deviations of masses and inertias, as a part of them, and of frictions, as a part of
+/// the torque.
 const DOUBT: f32 = 0.02;
 const VISCOUS: f32 = 1.0 / 600.0;
 const DRY: f32 = 1.0 / 60.0;

@@ -32,7 +32,8 @@ pub struct Cost<S = f64> {
     pub q: [[S; 4]; 4],
     /// The same of the state after the plan: 1/rad², s/rad² and s²/rad².
     pub qf: [[S; 4]; 4],
-    /// Of 2 − 2 cos x, for the deviation x of each angle from the target; x² where small. 1/s.
+    /// Of 2 − 2 cos x, for the deviation x of each angle from the target: x² where it is small.
+    /// 1/s.
     pub angles: [S; 2],
     /// R: of the square of the torque's difference from that which holds the target, 1/((N m)² s).
     pub torque: S,

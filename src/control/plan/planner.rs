@@ -63,7 +63,7 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`BoundedRegulator::about`], and a weight is out of range.
+    /// The errors of [`BoundedRegulator::about`], and a weight is out of range.
     #[inline(never)] // saves flash
     pub fn new(problem: &Problem<A::Scalar>) -> Result<Self, Error> {
         problem.cost.check()?;
@@ -223,8 +223,8 @@ impl<A: Arithmetic> Planner<A> {
             && self.track(plan).is_ok()
     }
 
-    /// Replaces the gains by those of a regulator along the plan, with the weights of that of the
-    /// target. Torques at their bound get some, too.
+    /// Replaces the gains by a regulator's along the plan, with the weights of the target's
+    /// regulator. Torques at their bound get some, too.
     pub(super) fn track(&self, plan: &mut [Knot<A::Scalar>]) -> Result<(), Error> {
         let BoundedRegulator { machine, weights: (q, r), cost_to_go, .. } = &self.regulator;
         let (mut model, q, mut cost) = (machine.clone(), spread(*q), *cost_to_go);

@@ -36,7 +36,7 @@ impl<S: Modeled> Problem<S> {
     ///
     /// # Errors
     ///
-    /// Those of [`Cost::new`].
+    /// The errors of [`Cost::new`].
     pub fn swing_up(params: Params<S>, limit: S) -> Result<Self, Error> {
         let cost = Cost::new(&params, limit)?;
         Ok(Self { params, limit, target: State::UPRIGHT, torque: S::from_f64(0.0), cost })
@@ -57,7 +57,7 @@ impl<S: Modeled> Problem<S> {
     ///
     /// # Errors
     ///
-    /// Those of [`Cost::new`], and the angle is not finite.
+    /// The errors of [`Cost::new`], and the angle is not finite.
     #[inline(never)] // saves flash
     pub fn balance(params: Params<S>, limit: S, elbow: S) -> Result<Self, Error> {
         let mut cost = Cost::new(&params, limit)?;

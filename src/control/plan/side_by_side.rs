@@ -40,7 +40,7 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// # Errors
     ///
-    /// Those of `plan_into`, and [`Error::OutOfMemory`] for too many steps.
+    /// The errors of `plan_into`, and [`Error::OutOfMemory`] for too many steps.
     pub fn plan<R: Rng + Clone>(
         &mut self,
         start: State<A::Scalar>,

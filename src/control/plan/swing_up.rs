@@ -43,7 +43,7 @@ impl<A: Arithmetic> SwingUp<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`BoundedRegulator::new`].
+    /// The errors of [`BoundedRegulator::new`].
     pub fn new(params: Params<A::Scalar>, limit: A::Scalar) -> Result<Self, Error> {
         let regulator = BoundedRegulator::<A>::new(params, limit)?;
         let Units { time, torque, force } = Units::new(&params, limit);
@@ -52,8 +52,8 @@ impl<A: Arithmetic> SwingUp<A> {
         Ok(Self { regulator, energy, pump, is_holding: false })
     }
 
-    /// The torque at a state, N m, at most the largest: that of the regulator from a state on from
-    /// which it holds, before that a torque that pumps energy.
+    /// The torque at a state, N m, at most the largest. It pumps energy until the regulator holds
+    /// from the state, and then regulates.
     ///
     /// # Errors
     ///

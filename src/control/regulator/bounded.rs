@@ -98,7 +98,7 @@ impl<A: Arithmetic> BoundedRegulator<A> {
     ///
     /// # Errors
     ///
-    /// Those of `new`, [`Error::NotInEquilibrium`], and the torque is not below the largest.
+    /// The errors of `new`, [`Error::NotInEquilibrium`], and the torque is not below the largest.
     #[inline(never)] // saves flash
     pub fn about(
         mut params: Params<A::Scalar>,
@@ -113,11 +113,7 @@ impl<A: Arithmetic> BoundedRegulator<A> {
         let bounds = bounds.map(|bound| replace(bound, infinity));
         let machine = Pendulum::<A>::new(params, target)?;
         let spare = limit - torque.abs();
-        Range::AboveZero.check(
-            "the largest torque without that of the target",
-            spare.to_f64(),
-            "N m",
-        )?;
+        Range::AboveZero.check("the largest torque minus the target's", spare.to_f64(), "N m")?;
         check_equilibrium(&machine, torque)?;
         let units = Units::new(&params, spare);
         let none = A::Scalar::ZERO;

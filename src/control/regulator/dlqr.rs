@@ -49,7 +49,7 @@ impl<S: Real> Lqr<S> {
 ///
 /// let params = Params { dt: 0.02, ..Params::DEFAULT };
 /// let upright = Pendulum::<Portable>::new(params, State::UPRIGHT)?;
-/// let identity = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+/// let identity = core::array::from_fn(|i| core::array::from_fn(|j| f64::from(i == j)));
 /// let lqr = dlqr(&upright.linearize_step(0.0)?, &identity, 1.0)?;
 /// assert!(lqr.torque([0.01, 0.0, 0.0, 0.0]) > 0.0); // against a lean
 /// # Ok::<(), acrobot::Error>(())

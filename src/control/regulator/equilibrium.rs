@@ -19,7 +19,7 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// [`Error::NotInEquilibrium`] for a velocity that is not 0, or an acceleration above 0.25 % of
     /// that with which the straight machine, when it is horizontal, falls and is turned by
-    /// `torque`: 0.011 rad/s² for Gymnasium's machine without a torque. Those of
+    /// `torque`: 0.011 rad/s² for Gymnasium's machine without a torque. The errors of
     /// [`linearize_step`](Self::linearize_step) and [`dlqr`].
     pub fn regulator(
         &self,

@@ -1,4 +1,5 @@
-//! The WebAssembly module of `acrobot-rs/control`: linear models, regulators, a planner and swinging up without one.
+//! The WebAssembly module of `acrobot-rs/control`: linear models, regulators, a planner and
+//! swinging up without one.
 //!
 //! All data except single numbers passes through the words of `memory`. A function returns 0, or
 //! the kind of error, whose details are in the words.

@@ -5,19 +5,16 @@
 
 use acrobot::physics::saturate;
 use acrobot::{Acrobot, Error, Fast, Params, State};
+use acrobot_cortex_m::plan::PLAN;
 use cortex_m_rt::entry;
-use plan::PLAN;
 use semihosting::{println, process};
-
-#[path = "../plan.rs"]
-mod plan;
 
 fn follow() -> Result<f32, Error> {
     let params = Params { dt: 0.02, ..Params::DEFAULT };
     let mut machine = Acrobot::<Fast>::with_params(42_u64, params)?; // stands for the machine
     for tick in 0..500 {
         let torque = PLAN.torque(tick, machine.state());
-        machine.step_torque(saturate(torque, 5.0))?; // a fifth is for corrections
+        machine.step_torque(saturate(torque, 10.0))?; // a fifth is for corrections
     }
     let [theta1, ..] = machine.state().deviation_from(State::UPRIGHT);
     Ok(theta1.abs())

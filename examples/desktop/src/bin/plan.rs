@@ -1,7 +1,7 @@
-//! Plans a swing-up, and writes the plan as a constant of Rust or C, for firmware without a planner.
+//! Writes the plan of a swing-up as a constant of Rust or C, for firmware without a planner.
 //!
 //! ```text
-//! cargo run --release -p desktop --bin plan -- --out plan.rs   # Gymnasium's machine, 4 N m
+//! cargo run --release -p desktop --bin plan -- --out plan.rs   # Gymnasium's machine, 8 N m
 //! cargo run --release -p desktop --bin plan -- --out plan.h    # for C
 //! ```
 
@@ -23,13 +23,13 @@ struct Options {
     #[arg(long, value_name = "FILE", default_value = "plan.rs")]
     out: PathBuf,
     /// The largest torque of the plan, N m: leave some of the motor's for corrections.
-    #[arg(long, default_value_t = 4.0)]
+    #[arg(long, default_value_t = 8.0)]
     limit: f32,
     /// Decisions a second.
     #[arg(long, default_value_t = 50)]
     rate: u16,
     /// The most steps of the plan.
-    #[arg(long, default_value_t = 250)]
+    #[arg(long, default_value_t = 150)]
     steps: usize,
 }
 
@@ -48,13 +48,13 @@ fn list(numbers: impl IntoIterator<Item = f32>) -> String {
 }
 
 fn rust_region(Region { gain, factor }: Region<f32>) -> String {
-    let rows = factor.map(|row| format!("[{}]", list(row))).join(", ");
-    format!("Region {{ gain: [{}], factor: [{rows}] }}", list(gain))
+    let rows = factor.map(|row| format!("        [{}],\n", list(row))).concat();
+    format!("Region {{ gain: [{}], factor: [\n{rows}    ] }}", list(gain))
 }
 
 fn c_region(Region { gain, factor }: Region<f32>) -> String {
-    let rows = factor.map(|row| format!("{{{}}}", list(row))).join(", ");
-    format!("{{{{{}}}, {{{rows}}}}}", list(gain))
+    let rows = factor.map(|row| format!("        {{{}}},\n", list(row))).concat();
+    format!("{{{{{}}}, {{\n{rows}    }}}}", list(gain))
 }
 
 fn lines<T>(items: &[T], line: impl Fn(&T) -> String) -> impl Display {
@@ -72,7 +72,7 @@ fn main() -> anyhow::Result<()> {
     let code = if out.extension().is_some_and(|name| name == "rs") {
         let knots = lines(knots, |knot| {
             let (state, torque, gain) = (state(knot.state), knot.torque, list(knot.gain));
-            format!("Knot::new([{state}], {torque:?}, [{gain}])")
+            format!("Knot::new([{state}], {torque:?},\n        [{gain}])")
         });
         format!(
             "// {rate} decisions a second, at most {limit} N m. Written by `plan`.\n\
@@ -94,13 +94,13 @@ fn main() -> anyhow::Result<()> {
     } else {
         let knots = lines(knots, |knot| {
             let (state, torque, gain) = (state(knot.state), knot.torque, list(knot.gain));
-            format!("{{{{{state}}}, {torque:?}, {{{gain}}}, {{0, 0}}}}")
+            format!("{{{{{state}}}, {torque:?},\n     {{{gain}}}, {{0, 0}}}}")
         });
         format!(
             "// {rate} decisions a second, at most {limit} N m. Written by `plan`.\n\
             static const acrobot_knot_t KNOTS[{count}] = {{\n{knots}}};\n\
-            static const acrobot_feedback_t AFTER = {{\n    {{{target}}}, {:?},\n    {},\n    {},\n    \
-            {:?},\n}};\n",
+            static const acrobot_feedback_t AFTER = {{\n    {{{target}}}, {:?},\n    {},\n    \
+            {},\n    {:?},\n}};\n",
             after.torque,
             c_region(after.moving),
             c_region(after.resting),

@@ -1,0 +1,46 @@
+"""Energy, linear models, regulators, simulations, plans and estimates of the acrobot.
+
+A state is the last axis: theta1, theta2 (rad) and their velocities (rad/s). Arrays broadcast in the
+axes before it. ``env`` is a single environment of this package, whose parameters count, or ``None``
+for Gymnasium's.
+"""
+
+from acrobot_rs.control.animation import Animation
+from acrobot_rs.control.estimate import Estimator, Fit, identify
+from acrobot_rs.control.model import (
+    UPRIGHT,
+    derivative,
+    deviation,
+    dlqr,
+    energy,
+    inverse_dynamics,
+    linearize,
+    linearize_step,
+    mass_matrix,
+    regulator,
+    simulate,
+)
+from acrobot_rs.control.plan import Feedback, Plan, Planner, Region, SwingUp
+
+__all__ = [
+    "UPRIGHT",
+    "Animation",
+    "Estimator",
+    "Feedback",
+    "Fit",
+    "Plan",
+    "Planner",
+    "Region",
+    "SwingUp",
+    "derivative",
+    "deviation",
+    "dlqr",
+    "energy",
+    "identify",
+    "inverse_dynamics",
+    "linearize",
+    "linearize_step",
+    "mass_matrix",
+    "regulator",
+    "simulate",
+]

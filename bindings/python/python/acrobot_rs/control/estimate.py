@@ -1,0 +1,102 @@
+"""The state of a machine from its angles alone, and its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from acrobot_rs import _native
+from acrobot_rs.arrays import must_be, numbers
+from acrobot_rs.control.model import Env, Floats, acrobot_of
+
+#: The parameters that an estimator can find, in the order of the native part.
+_ESTIMATED = (
+    *("LINK_MASS_1", "LINK_MASS_2", "LINK_LENGTH_1", "LINK_MOI_1", "LINK_MOI_2"),
+    *("DAMPING_1", "DAMPING_2", "COULOMB_1", "COULOMB_2", "ROTOR"),
+)
+
+
+class Estimator:
+    """Estimates the state of a machine from its angles alone: an extended Kalman filter.
+
+    The model has the parameters of ``env``. ``angle_std``, rad, and ``torque_std``, N m, are the
+    standard deviations of the noise; an encoder of n counts a turn has 1.8 / n. Parameters that
+    are named in ``parameter_std``, with their standard deviations, are estimated too: masses,
+    moments of inertia, the length of link 1, frictions and ``ROTOR``.
+
+    In each ``dt`` call :meth:`correct`, decide, and call :meth:`predict`.
+    """
+
+    def __init__(
+        self,
+        env: Env = None,
+        *,
+        angle_std: float,
+        torque_std: float,
+        parameter_std: Mapping[str, float] | None = None,
+    ) -> None:
+        named = parameter_std or {}
+        if unknown := named.keys() - set(_ESTIMATED):
+            raise must_be("parameter_std", f"of {', '.join(_ESTIMATED)}", sorted(unknown))
+        given = [named.get(name, 0.0) for name in _ESTIMATED]
+        self._native = _native.Estimator(acrobot_of(env)._native, angle_std, torque_std, given)
+
+    def correct(self, angles: ArrayLike) -> Floats:
+        """Correct the estimate by measured theta1 and theta2, rad. Return the state."""
+        measured = numbers("angles", "two numbers", angles, (2,)).tolist()
+        return np.array(self._native.correct(measured))
+
+    def predict(self, torque: float) -> None:
+        """Predict the state after one ``dt`` under a torque, N m."""
+        self._native.predict(torque)
+
+    @property
+    def state_std(self) -> Floats | None:
+        """The standard deviations of the state. ``None`` before a measurement."""
+        found = self._native.state_std()
+        return None if found is None else np.array(found)
+
+    @property
+    def params(self) -> dict[str, Any]:
+        """The parameters, estimated and known, as arguments of an environment."""
+        return dict(self._native.params())
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What :func:`identify` finds.
+
+    ``values`` are ten numbers that a motion tells, by name, with ``std_errors``: ``Fit::NAMES`` in
+    Rust has them. ``rank_deficiency`` combinations of them are not determined, and ``weakest`` has
+    the parts of the one that is determined worst.
+    """
+
+    params: dict[str, Any]  #: arguments of an environment, each a number
+    values: dict[str, float]
+    std_errors: dict[str, float]
+    weakest: dict[str, float]
+    rank_deficiency: int
+
+
+def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env) -> Fit:
+    """Identify a machine from recordings in which both links move, for ten seconds or so.
+
+    A recording has angles, ``(n, 2)``, rad, without jumps by whole turns, and the motor's torques,
+    ``(n,)``, N m, or those of both joints, ``(n, 2)``, each until the next sample. ``env`` has
+    ``dt``, gravity and the centres of mass; its lengths should be about right.
+    """
+    recordings = []
+    for angle, torque in zip(angles, torques, strict=True):
+        columns = np.asarray(torque, np.float64)
+        if columns.ndim == 1:
+            columns = np.column_stack([np.zeros_like(columns), columns])
+        rule = f"an array of shape {columns.shape}, as the torques have"
+        angle = numbers("angles", rule, angle, columns.shape)
+        recordings.append(np.column_stack([angle, columns]).tolist())
+    params, found, rank_deficiency = _native.identify(acrobot_of(env)._native, recordings)
+    values, std_errors, weakest = ({name: row[i] for name, row in found} for i in range(3))
+    return Fit(dict(params), values, std_errors, weakest, rank_deficiency)

@@ -1,0 +1,114 @@
+"""Energy, linear models, regulators and simulations: functions for many states at once."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from acrobot_rs import _native
+from acrobot_rs.arrays import must_be, numbers
+from acrobot_rs.env import AcrobotEnv
+
+Env = gymnasium.Env[Any, Any] | None
+Floats = NDArray[np.float64]
+Pair = tuple[Floats, Floats]
+
+#: Standing upright at rest.
+UPRIGHT = (math.pi, 0.0, 0.0, 0.0)
+
+
+def energy(state: ArrayLike, env: Env = None) -> Floats:
+    """The mechanical energy, J. Its potential part is 0 at the height of the fixed joint."""
+    return _call("energy", (), env, state=state)
+
+
+def mass_matrix(state: ArrayLike, env: Env = None) -> Floats:
+    """M, ``(..., 2, 2)``, kg m². The kinetic energy is q̇ᵀ M q̇ / 2."""
+    return _call("mass_matrix", (2, 2), env, state=state)
+
+
+def derivative(state: ArrayLike, torque: ArrayLike, env: Env = None) -> Floats:
+    """The velocities and accelerations, ``(..., 4)``, under a torque, N m."""
+    return _call("derivative", (4,), env, state=state, torque=torque)
+
+
+def inverse_dynamics(state: ArrayLike, accelerations: ArrayLike, env: Env = None) -> Floats:
+    """The torques of both joints, N m, for two accelerations, rad/s². The motor has the second."""
+    return _call("inverse_dynamics", (2,), env, state=state, accelerations=accelerations)
+
+
+def deviation(state: ArrayLike, target: ArrayLike = UPRIGHT) -> Floats:
+    """The state minus the target, with differences of angles from -pi to pi."""
+    return _call("deviation", (4,), None, state=state, target=target)
+
+
+def linearize(state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None) -> Pair:
+    """A, ``(..., 4, 4)``, and B, ``(..., 4, 1)``, of ẋ = A x + B u."""
+    rows = _call("linearize", (5, 4), env, state=state, torque=torque)
+    return rows[..., :4, :], rows[..., 4, :, None]
+
+
+def linearize_step(state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None) -> Pair:
+    """A and B of one step of ``dt``, after which x is A x + B u."""
+    rows = _call("linearize_step", (5, 4), env, state=state, torque=torque)
+    return rows[..., :4, :], rows[..., 4, :, None]
+
+
+def dlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
+    """The linear-quadratic regulator of a model of one step.
+
+    Q weights the state and R, a number or ``(..., 1, 1)``, the torque. Returns K, ``(..., 1, 4)``,
+    of u = -K x, and P, ``(..., 4, 4)``: xᵀ P x is the cost of all steps.
+    """
+    rows = _call("dlqr", (5, 4), None, A=A, B=B, Q=Q, R=R)
+    return rows[..., :1, :], rows[..., 1:, :]
+
+
+def regulator(
+    Q: ArrayLike, R: ArrayLike, state: ArrayLike = UPRIGHT, torque: ArrayLike = 0.0, env: Env = None
+) -> Pair:
+    """K and P of :func:`dlqr` for an acrobot in equilibrium under a torque, N m."""
+    rows = _call("regulator", (5, 4), env, state=state, Q=Q, torque=torque, R=R)
+    return rows[..., :1, :], rows[..., 1:, :]
+
+
+def simulate(state: ArrayLike, torques: ArrayLike, env: Env = None) -> Floats:
+    """The state and those after each of ``n`` torques, N m: ``(..., n + 1, 4)``.
+
+    They are bit-identical to those of the environment, but nothing clips the torques or ends the
+    simulation.
+    """
+    states = 1 + math.prod(np.shape(torques)[-1:])
+    return _call("simulate", (states, 4), env, state=state, torques=torques)
+
+
+_GYMNASIUM = AcrobotEnv()
+#: The last axes of inputs. Others have 4, and ``torques`` any number.
+_AXES = {"torque": (), "accelerations": (2,), "A": (4, 4), "B": (4, 1), "Q": (4, 4), "R": (1, 1)}
+
+
+def acrobot_of(env: Env) -> Any:
+    return _GYMNASIUM if env is None else env.unwrapped
+
+
+def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) -> Floats:
+    """Call a native function for each state. A result has this shape."""
+    parts = []
+    for name, value in inputs.items():
+        array = numbers(name, "numbers", value, None)
+        axes = array.shape[-1:] if name == "torques" else _AXES.get(name, (4,))
+        if array.ndim < len(axes) and array.size == math.prod(axes):
+            array = array.reshape(axes)  # a number or a vector for a matrix
+        others = array.shape[: array.ndim - len(axes)]
+        if array.shape != (*others, *axes):
+            rule = f"an array of shape (..., {', '.join(map(str, axes))})"
+            raise must_be(name, rule, array.shape)
+        parts.append(array.reshape(*others, math.prod(axes)))
+    others = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
+    rows = np.concatenate([np.broadcast_to(x, (*others, x.shape[-1])) for x in parts], axis=-1)
+    rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]), np.float64)
+    return _native.compute(function, acrobot_of(env)._native, rows).reshape((*others, *shape))
