@@ -50,6 +50,19 @@ use work::Work;
 /// child, under a [`TimeLimit`](crate::TimeLimit), whatever `N` and the [SIMD
 /// instructions](SimdLevel).
 ///
+/// ```
+/// # use acrobot::Fast;
+/// # use acrobot::batch::{Batch, BatchMemory, Block, StepBuffers};
+/// # use acrobot::numpy::Pcg64;
+/// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+/// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+/// let (mut rewards, mut terminated, mut truncated) = ([0.0; 3], [false; 3], [false; 3]);
+/// let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
+/// batch.step_into(&[2_u8; 3], buffers)?;
+/// assert_eq!((rewards, batch.elapsed_steps(0)?), ([-1.0; 3], 1));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
 /// `S` is its [memory](BatchMemory). `N` must be from 1 to 32, or the program does not compile.
 ///
 /// # Snapshots
@@ -67,6 +80,17 @@ pub struct Batch<A: Arithmetic, S, T = Gymnasium, const N: usize = 16> {
 impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// A batch with one acrobot for each generator, with the default parameters, in its initial
     /// state. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet spawned.
+    ///
+    /// ```
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::{Pcg64, SeedSequence};
+    /// # use acrobot::{Acrobot, Fast};
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// let alone = Acrobot::<Fast>::new(SeedSequence::new(42).child(2));
+    /// assert_eq!(batch.state(2)?, alone.state());
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     ///
     /// # Errors
     ///
@@ -131,6 +155,19 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     /// As [`step_into`](Self::step_into), with its errors, on all cores with rayon. The number of
     /// threads changes no bit.
+    ///
+    /// ```
+    /// # use acrobot::Fast;
+    /// # use acrobot::batch::{Batch, BatchMemory, Block, StepBuffers};
+    /// # use acrobot::numpy::Pcg64;
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// let (mut rewards, mut terminated, mut truncated) = ([0.0; 3], [false; 3], [false; 3]);
+    /// let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
+    /// batch.par_step_into(&[0.5_f32; 3], buffers)?; // N m
+    /// assert_eq!(rewards, [-1.0; 3]);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     #[cfg(feature = "rayon")]
     pub fn par_step_into<I: Input<A::Scalar>>(
         &mut self,
@@ -165,6 +202,18 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     /// Writes the [observations](Task::Observation) of the states.
     ///
+    /// ```
+    /// # use acrobot::Fast;
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// let mut observations = [[0.0; 6]; 3];
+    /// batch.observe(&mut observations)?;
+    /// assert_eq!(observations[0][4], batch.state(0)?.dtheta1); // rad/s
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
+    ///
     /// # Errors
     ///
     /// [`Error::WrongLength`] unless there is one element for each acrobot.
@@ -177,6 +226,20 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     }
 
     /// The generators, one for each acrobot, to draw from them or to replace them.
+    ///
+    /// ```
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::{Acrobot, Fast};
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// for (rng, seed) in batch.generators_mut().iter_mut().zip(42..) {
+    ///     *rng = Pcg64::new(seed); // 42, 43 and 44, as in SyncVectorEnv
+    /// }
+    /// batch.reset();
+    /// assert_eq!(batch.state(1)?, Acrobot::<Fast>::new(43).state());
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     pub fn generators_mut(&mut self) -> &mut [Pcg64] {
         self.storage.slices_mut().generators
     }
@@ -189,6 +252,17 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     /// Whether the episode of acrobot `index` has ended and it waits for a reset: by the next step
     /// or, with [`Autoreset::Disabled`], by the caller. Or [`Error::NoSuchIndex`].
+    ///
+    /// ```
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::{Error, Fast};
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// assert!(!batch.is_done(0)?);
+    /// assert_eq!(batch.is_done(3), Err(Error::NoSuchIndex { index: 3, len: 3 }));
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     pub fn is_done(&self, index: usize) -> Result<bool, Error> {
         let (block, _) = self.block_and_rng(index)?;
         Ok(block.progress(index % N).1)
@@ -201,6 +275,17 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     }
 
     /// Sets the state of acrobot `index`. Its episode continues, or still waits for a reset.
+    ///
+    /// ```
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::{Fast, State};
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// batch.set_state(0, State { theta1: 0.5, ..State::HANGING })?; // rad
+    /// assert_eq!(batch.state(0)?.theta1, 0.5);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     ///
     /// # Errors
     ///
@@ -250,6 +335,19 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     }
 
     /// Sets the bounds of initial states for the next resets.
+    ///
+    /// ```
+    /// # use acrobot::Fast;
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::task::ResetBounds;
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// batch.set_reset_bounds(ResetBounds::new(0.3, 0.4)?); // rad and rad/s
+    /// batch.reset();
+    /// assert!((0.3..=0.4).contains(&batch.state(0)?.theta1));
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     pub fn set_reset_bounds(&mut self, bounds: ResetBounds) {
         self.settings.bounds = bounds;
     }

@@ -103,6 +103,14 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
 
 /// Where the links of one acrobot or of many are and how they move: a state, with the sines and
 /// cosines of its angles.
+///
+/// ```
+/// use acrobot::{Params, State, task::Pose};
+///
+/// let pose = Pose { state: State::UPRIGHT, sin_cos: [(0.0, -1.0), (0.0, 1.0)] };
+/// assert_eq!(pose.directions(), [(0.0, -1.0); 2]); // both links point up
+/// assert_eq!(pose.positions(&Params::<f64>::DEFAULT), [[0.0, 1.0], [0.0, 2.0]]); // m
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Pose<V> {
     /// The state.

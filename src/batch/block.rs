@@ -14,6 +14,14 @@ use crate::task::{Observation, Pose, ResetBounds, Task, episode};
 ///
 /// `N` = 16 suits a machine with SIMD. For a few acrobots, a smaller `N` wastes less memory: in
 /// `Fast` a block has 640 bytes with 16, and 64 bytes with 1.
+///
+/// ```
+/// use acrobot::{Fast, batch::Block};
+///
+/// let three: [Block<Fast, 1>; 3] = [Block::EMPTY; 3]; // for 3 acrobots
+/// assert_eq!(size_of_val(&three), 192); // bytes
+/// assert_eq!(size_of::<Block>(), 640); // for up to 16
+/// ```
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Block<A: Arithmetic = Fast, const N: usize = 16> {

@@ -3,6 +3,20 @@
 use crate::error::Error;
 
 /// Where a step of a [`Batch`](super::Batch) writes its results, one element for each acrobot.
+///
+/// ```
+/// # use acrobot::Fast;
+/// # use acrobot::batch::{Batch, BatchMemory, Block, StepBuffers};
+/// # use acrobot::numpy::Pcg64;
+/// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+/// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+/// let (mut rewards, mut terminated, mut truncated) = ([0.0; 3], [false; 3], [false; 3]);
+/// let mut rows = [[0.0; 6]; 3];
+/// let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
+/// batch.step_into(&[2_u8; 3], buffers.with_observations(&mut rows))?;
+/// assert_eq!(rows[0][4], batch.state(0)?.dtheta1); // rad/s
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct StepBuffers<'a, O = [f32; 6]> {
@@ -39,6 +53,16 @@ impl<'a, O> StepBuffers<'a, O> {
     }
 
     /// The same buffers, and one for the last observations of episodes that end.
+    ///
+    /// ```
+    /// # use acrobot::batch::StepBuffers;
+    /// let (mut rewards, mut terminated, mut truncated) = ([0.0; 3], [false; 3], [false; 3]);
+    /// let (mut rows, mut last) = ([[0.0; 6]; 3], [[0.0; 6]; 3]);
+    /// let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+    ///     .with_observations(&mut rows)
+    ///     .with_final_observations(&mut last);
+    /// assert!(buffers.final_observations.is_some());
+    /// ```
     #[must_use]
     pub fn with_final_observations(mut self, final_observations: &'a mut [O]) -> Self {
         self.final_observations = Some(final_observations);

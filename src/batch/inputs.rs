@@ -8,6 +8,15 @@ use crate::physics::check_torque;
 
 /// What a step of a batch applies to an acrobot: an action as a `u8` (0, 1 or 2) or an [`Action`],
 /// or any finite torque in N m, as the scalar of the arithmetic. No other type can implement it.
+///
+/// ```
+/// use acrobot::{Action, batch::Input};
+///
+/// fn count<I: Input<f32>>(inputs: &[I]) -> usize {
+///     inputs.len()
+/// }
+/// assert_eq!([count(&[0_u8, 2]), count(&[Action::Zero]), count(&[0.5, -0.5])], [2, 1, 2]);
+/// ```
 pub trait Input<S>: Copy + Sync {
     #[doc(hidden)]
     fn inputs(inputs: &[Self]) -> Inputs<'_, S>;

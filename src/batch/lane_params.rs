@@ -8,6 +8,14 @@ use crate::task::Draws;
 
 /// The memory for the parameters of `N` acrobots, where each has its own: 2240 bytes for 16 in
 /// `Fast`.
+///
+/// ```
+/// use acrobot::batch::{LaneParams, OwnParams};
+///
+/// let lane_params: [LaneParams; 4] = [LaneParams::default(); 4];
+/// let own: OwnParams<_> = OwnParams::new(lane_params); // for up to 64 acrobots
+/// assert_eq!(size_of::<LaneParams>(), 2240); // bytes
+/// ```
 // Aligned, because an SSE instruction can read only aligned numbers from memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]

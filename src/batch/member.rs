@@ -11,6 +11,18 @@ use crate::task::Task;
 
 /// One acrobot of a batch, as plain data. Unlike a [whole batch](Batch#snapshots), it is stored
 /// without a version. Others can continue from it by [`set_member`](Batch::set_member).
+///
+/// ```
+/// # use acrobot::Fast;
+/// # use acrobot::batch::{Batch, BatchMemory, Block, Member};
+/// # use acrobot::numpy::Pcg64;
+/// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+/// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+/// let best: Member<Fast> = batch.member(2)?;
+/// batch.set_member(0, best.clone())?; // it continues from the best
+/// assert_eq!(batch.member(0)?, best);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]

@@ -27,6 +27,17 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     /// Sets the parameters of all acrobots for the next steps, with the errors of
     /// [`Pendulum::set_params`](crate::physics::Pendulum::set_params).
+    ///
+    /// ```
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::{Fast, Params};
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// batch.set_all_params(Params { dt: 0.05, ..Params::DEFAULT })?; // s
+    /// assert_eq!((batch.params(2)?.dt, batch.has_own_params()), (0.05, false));
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     pub fn set_all_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         self.check_params(&params)?;
         let model = model::<A>(params);
@@ -38,7 +49,8 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         Ok(())
     }
 
-    /// Sets the parameters of acrobot `index` for the next steps.
+    /// Sets the parameters of acrobot `index` for the next steps: [an
+    /// example](super::OwnParams).
     ///
     /// # Errors
     ///
@@ -67,6 +79,21 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     /// Sets what each reset, also one in a step, draws of the acrobot's parameters after its
     /// initial state.
+    ///
+    /// ```
+    /// # use acrobot::batch::{Batch, BatchMemory, Block, LaneParams, OwnParams};
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::task::{Draw, Draws};
+    /// # use acrobot::{Fast, Params};
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let own = OwnParams::new([LaneParams::default()]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own })?;
+    /// let mass2 = Draw::Uniform { low: 0.8, high: 1.2 }; // kg
+    /// batch.set_draws(Draws::new(Params { mass2, ..Draws::FIXED })?)?;
+    /// batch.reset();
+    /// assert!(batch.params(0)?.mass2 != batch.params(1)?.mass2);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     ///
     /// # Errors
     ///

@@ -11,6 +11,20 @@ use crate::task::{ResetOptions, Task};
 
 impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// Resets all acrobots, each with the next draws of its stream.
+    ///
+    /// ```
+    /// # use acrobot::Fast;
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// let first = batch.state(0)?;
+    /// batch.reset();
+    /// assert_ne!(batch.state(0)?, first);
+    /// batch.reset_with_seed(42);
+    /// assert_eq!(batch.state(0)?, first);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     pub fn reset(&mut self) {
         self.reset_with(ResetOptions::default());
     }
@@ -22,12 +36,37 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     /// Gymnasium's `reset(seed=…, options=…)` for all acrobots. A seed seeds acrobot `i` with the
     /// `i`-th child that the seed has not yet spawned.
+    ///
+    /// ```
+    /// # use acrobot::Fast;
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::task::{ResetBounds, ResetOptions};
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// let bounds = Some(ResetBounds::new(0.3, 0.4)?); // rad and rad/s
+    /// batch.reset_with(ResetOptions { bounds, ..7.into() });
+    /// assert!((0.3..=0.4).contains(&batch.state(0)?.theta1));
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     pub fn reset_with(&mut self, options: ResetOptions) {
         self.reset_lanes(core::iter::repeat(true), options);
     }
 
     /// As [`reset_with`](Self::reset_with), for the acrobots whose element of `mask` is true:
     /// Gymnasium's `reset(options={"reset_mask": mask})`. The others do not change.
+    ///
+    /// ```
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::{Pcg64, SeedSequence};
+    /// # use acrobot::{Acrobot, Fast};
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// batch.reset_masked(&[true, false, false], 7.into())?;
+    /// let alone = Acrobot::<Fast>::new(SeedSequence::new(7).child(0));
+    /// assert_eq!(batch.state(0)?, alone.state());
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     ///
     /// # Errors
     ///
@@ -55,6 +94,17 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     }
 
     /// Begins an episode of each acrobot in a given state. Draws nothing.
+    ///
+    /// ```
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::{Fast, State};
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+    /// batch.reset_to(&[State::HANGING, State::UPRIGHT, State::HANGING])?;
+    /// assert_eq!(batch.state(1)?, State::UPRIGHT);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     ///
     /// # Errors
     ///

@@ -7,6 +7,21 @@ use crate::physics::Model;
 use crate::task::ResetBounds;
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
+///
+/// ```
+/// # use std::num::NonZeroU32;
+/// # use acrobot::Fast;
+/// # use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, StepBuffers};
+/// # use acrobot::numpy::Pcg64;
+/// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+/// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+/// batch.set_autoreset(Autoreset::SameStep);
+/// batch.set_max_steps(NonZeroU32::MIN); // each step ends the episode
+/// let (mut rewards, mut terminated, mut truncated) = ([0.0; 3], [false; 3], [false; 3]);
+/// batch.step_into(&[2_u8; 3], StepBuffers::new(&mut rewards, &mut terminated, &mut truncated))?;
+/// assert_eq!((truncated, batch.elapsed_steps(0)?), ([true; 3], 0));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -57,6 +57,20 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// Loads a [snapshot](Self#snapshots) of a batch into memory for as many acrobots, for example
     /// with `&mut postcard::Deserializer::from_bytes(&bytes)`.
     ///
+    /// ```
+    /// # use acrobot::Fast;
+    /// # use acrobot::batch::{Batch, BatchMemory, Block};
+    /// # use acrobot::numpy::Pcg64;
+    /// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+    /// let memory = BatchMemory { blocks, generators, own: () };
+    /// let batch = Batch::<Fast, _>::new(42, memory.clone()).unwrap();
+    /// let bytes = postcard::to_stdvec(&batch)?;
+    /// let mut reader = postcard::Deserializer::from_bytes(&bytes);
+    /// let loaded = Batch::<Fast, _>::from_snapshot(memory, &mut reader)?;
+    /// assert_eq!(loaded.member(2), batch.member(2));
+    /// # Ok::<(), postcard::Error>(())
+    /// ```
+    ///
     /// # Errors
     ///
     /// Those of the format, of [`new`](Self::new), of [`set_member`](Self::set_member), of

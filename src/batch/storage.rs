@@ -31,6 +31,18 @@ pub struct BatchMemory<B, G, O = ()> {
 }
 
 /// The memory for the parameters of each acrobot, and for what resets draw of them.
+///
+/// ```
+/// # use acrobot::batch::{Batch, BatchMemory, Block, LaneParams, OwnParams};
+/// # use acrobot::numpy::Pcg64;
+/// # use acrobot::{Fast, Params};
+/// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+/// let own = OwnParams::new([LaneParams::default()]);
+/// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own })?;
+/// batch.set_params(1, Params { mass2: 0.8, ..Params::DEFAULT })?; // kg
+/// assert_eq!((batch.params(0)?.mass2, batch.params(1)?.mass2), (1.0, 0.8));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct OwnParams<P, S = f32> {
     pub(super) lane_params: P,
@@ -47,6 +59,19 @@ impl<P, S: Real> OwnParams<P, S> {
 }
 
 /// A [`BatchMemory`].
+///
+/// ```
+/// # use acrobot::batch::{Batch, BatchMemory, Block, Storage};
+/// # use acrobot::numpy::Pcg64;
+/// # use acrobot::{Error, Fast};
+/// fn speed<S: Storage<Fast, 16>>(batch: &Batch<Fast, S>) -> Result<f32, Error> {
+///     Ok(batch.state(0)?.dtheta1.abs()) // rad/s
+/// }
+/// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+/// let batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+/// assert!(speed(&batch)? <= 0.1);
+/// # Ok::<(), Error>(())
+/// ```
 pub trait Storage<A: Arithmetic, const N: usize> {
     #[doc(hidden)]
     fn slices(&self) -> Slices<'_, A, N>;

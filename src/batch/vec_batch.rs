@@ -25,7 +25,18 @@ type InVecs<A, T, const N: usize> = Batch<A, Memory<A, N>, T, N>;
 /// A [`Batch`] of another length may replace the one inside. The next results need new memory:
 /// without it a step returns [`Error::OutOfMemory`], and the observations are empty.
 ///
-/// [An example](crate::guide::rust#many-at-once), also with own parameters for each acrobot.
+/// ```
+/// use acrobot::{Action, Fast, batch::VecBatch};
+///
+/// let mut batch = VecBatch::<Fast>::new(42, 1000)?;
+/// let dtheta1 = batch.observations()[0][4]; // rad/s
+/// let results = batch.step(&[Action::Positive; 1000])?;
+/// assert_eq!(results.rewards, [-1.0; 1000]);
+/// assert!(results.observations[0][4] != dtheta1);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// [Another](crate::guide::rust#many-at-once) has own parameters for each acrobot.
 #[derive(Clone, Debug)]
 pub struct VecBatch<A: Arithmetic, T: Task = Gymnasium, const N: usize = 16> {
     batch: InVecs<A, T, N>,
@@ -33,6 +44,16 @@ pub struct VecBatch<A: Arithmetic, T: Task = Gymnasium, const N: usize = 16> {
 }
 
 /// The results of a step of a [`VecBatch`], as in [`StepBuffers`]. The next step overwrites them.
+///
+/// ```
+/// use acrobot::Fast;
+/// use acrobot::batch::{StepResults, VecBatch};
+///
+/// let mut batch = VecBatch::<Fast>::new(42, 3)?;
+/// let StepResults { rewards, observations, .. } = batch.step(&[1.0_f32; 3])?; // N m
+/// assert_eq!((&rewards[..], observations.len()), (&[-1.0; 3][..], 3));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StepResults<O = [f32; 6]> {
@@ -77,6 +98,15 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     /// Allocates parameters for each acrobot, which [`set_params`](Batch::set_params) and
     /// [`set_draws`](Batch::set_draws) need. They begin as those that all share.
     ///
+    /// ```
+    /// # use acrobot::{Fast, Params, batch::VecBatch};
+    /// let mut batch = VecBatch::<Fast>::new(42, 1000)?;
+    /// batch.own_params()?;
+    /// batch.set_params(7, Params { length1: 1.5, ..Params::DEFAULT })?; // m
+    /// assert_eq!((batch.params(6)?.length1, batch.params(7)?.length1), (1.0, 1.5));
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
+    ///
     /// # Errors
     ///
     /// [`Error::OutOfMemory`]. Then nothing changes.
@@ -118,6 +148,15 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     }
 
     /// As [`step`](Self::step), with its errors, on all cores: see [`Batch::par_step_into`].
+    ///
+    /// ```
+    /// # use acrobot::{Action, Fast, batch::VecBatch};
+    /// let mut batch = VecBatch::<Fast>::new(42, 20_000)?;
+    /// let mut same = batch.clone();
+    /// let actions = [Action::Positive; 20_000];
+    /// assert_eq!(batch.par_step(&actions)?, same.step(&actions)?);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     #[cfg(feature = "rayon")]
     pub fn par_step<I: Input<A::Scalar>>(
         &mut self,

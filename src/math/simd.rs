@@ -5,6 +5,18 @@
 ///
 /// With the `std` feature on x86-64 they are the widest that the machine has. Elsewhere there
 /// is only the baseline, such as WASM's simd128 or NEON.
+///
+/// ```
+/// # use acrobot::Fast;
+/// # use acrobot::batch::{Batch, BatchMemory, Block, SimdLevel};
+/// # use acrobot::numpy::Pcg64;
+/// let (blocks, generators) = ([Block::EMPTY], [Pcg64::UNSEEDED; 3]);
+/// let mut batch = Batch::<Fast, _>::new(42, BatchMemory { blocks, generators, own: () })?;
+/// assert_eq!(batch.simd_level(), SimdLevel::widest());
+/// batch.set_simd_level(SimdLevel::Baseline);
+/// assert!(batch.simd_level().is_available()); // on each machine
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

@@ -13,6 +13,16 @@ use crate::physics::{Params, State};
 
 /// Stay upright: Gymnasium's acrobot with steps of 0.02 s and a motor of 10 N m. An episode begins
 /// within the bounds of upright, and no state ends it.
+///
+/// ```
+/// use acrobot::{Acrobot, Fast, State, task::Balance};
+///
+/// let mut acrobot = Acrobot::<Fast, Balance>::new(42);
+/// let x = acrobot.state().deviation_from(State::UPRIGHT);
+/// assert!(x.iter().all(|x| x.abs() <= 0.051)); // rad and rad/s
+/// assert!(acrobot.step_torque(2.5)?.reward > 0.99); // N m
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Balance;

@@ -9,6 +9,17 @@ use crate::numpy::uniform;
 use crate::physics::{Dynamics, FIELDS, Modeled, Params, check_params};
 
 /// How a reset draws one parameter, in its unit. Where both bounds are equal, it draws nothing.
+///
+/// ```
+/// use acrobot::task::{Draw, Draws};
+/// use acrobot::{Params, numpy::Pcg64};
+///
+/// let gravity = Draw::Normal { mean: 9.8, std: 0.1, low: 9.5, high: 10.1 }; // m/s²
+/// let draws = Draws::new(Params { gravity, ..Draws::FIXED })?;
+/// let drawn: Params = draws.draw(&Params::DEFAULT, &mut Pcg64::new(42));
+/// assert!((9.5..=10.1).contains(&drawn.gravity));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -110,6 +121,17 @@ fn normal<R: Rng + ?Sized>(rng: &mut R, mean: f64, std: f64, low: f64, high: f64
 /// How each reset draws the parameters: after the initial state, in the order of the fields, from
 /// the same generator. Those of a [batch](crate::guide::rust#many-at-once) draw by themselves, an
 /// acrobot by [`draw_params`](crate::Acrobot::draw_params).
+///
+/// ```
+/// use acrobot::task::{Draw, Draws};
+/// use acrobot::{Acrobot, Fast, Params};
+///
+/// let mass2 = Draw::Uniform { low: 0.8, high: 1.2 }; // kg
+/// let mut acrobot = Acrobot::<Fast>::new(42);
+/// acrobot.draw_params(&Draws::new(Params { mass2, ..Draws::FIXED })?)?;
+/// assert!((0.8..=1.2).contains(&acrobot.params().mass2) && acrobot.params().mass1 == 1.0);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Draws<S = f64>(Params<Draw<S>>);

@@ -9,6 +9,14 @@ use crate::math::sealed::Sealed;
 use crate::physics::Params;
 
 /// Gymnasium's `Acrobot-v1`: swing the tip above a height.
+///
+/// ```
+/// use acrobot::{Acrobot, Action, Fast, numpy::Pcg64, task::Gymnasium};
+///
+/// let mut acrobot = Acrobot::<Fast, Gymnasium>::hanging(Pcg64::new(42));
+/// assert_eq!(acrobot.observation(), [1.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+/// assert_eq!(acrobot.step(Action::Zero).reward, -1.0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Gymnasium;
@@ -62,6 +70,14 @@ fn highest_velocities(params: &Params<f32>) -> [f32; 2] {
 }
 
 /// Gymnasium's `Acrobot-v0`: as [`Gymnasium`], with the state as the observation and 200 steps.
+///
+/// ```
+/// use acrobot::{Acrobot, Fast, TimeLimit, task::GymnasiumV0};
+///
+/// let mut acrobot = TimeLimit::with_task_limit(Acrobot::<Fast, GymnasiumV0>::new(42));
+/// assert_eq!(acrobot.observation(), <[f32; 4]>::from(acrobot.state())); // rad and rad/s
+/// assert_eq!(acrobot.max_steps().get(), 200);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GymnasiumV0;

@@ -5,6 +5,15 @@ use core::fmt;
 use crate::math::Real;
 
 /// `[f32; N]`: the numbers that an agent sees.
+///
+/// ```
+/// use acrobot::{Acrobot, Fast, task::Observation};
+///
+/// fn largest<O: Observation>(observation: O) -> f32 {
+///     observation.as_ref().iter().fold(0.0, |largest, x| x.max(largest))
+/// }
+/// assert!(largest(Acrobot::<Fast>::new(42).observation()) > 0.99); // cos θ1 and cos θ2
+/// ```
 pub trait Observation:
     AsRef<[f32]> + AsMut<[f32]> + Copy + fmt::Debug + PartialEq + Send + Sync + Sealed + 'static
 {

@@ -7,6 +7,16 @@ use crate::numpy::uniform;
 use crate::physics::State;
 
 /// The bounds between which a reset draws each number of an initial state, rad and rad/s.
+///
+/// ```
+/// use acrobot::{Acrobot, Fast, numpy::Pcg64, task::ResetBounds};
+///
+/// let mut acrobot = Acrobot::<Fast>::new(0);
+/// acrobot.reset_with(ResetBounds::new(0.3, 0.4)?.into());
+/// assert!((0.3..=0.4).contains(&acrobot.state().theta1)); // rad
+/// assert_eq!(ResetBounds::new(0.5, 0.5)?.draw(&mut Pcg64::new(0)), [0.5; 4].into());
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ResetBounds {

@@ -15,6 +15,16 @@ use crate::physics::{Params, State};
 /// 0.2 m from the target, 2 m above the fixed joint, and falls to 0.1 at 1.2 m.
 ///
 /// Beyond 0.2 m it is below 1. So `reward == 1.0` is the reward of `acrobot-swingup_sparse`.
+///
+/// ```
+/// use acrobot::task::Swingup;
+/// use acrobot::{Acrobot, Fast, State, arithmetic::Damped};
+///
+/// let mut acrobot = Acrobot::<Damped<Fast>, Swingup>::new(42);
+/// acrobot.set_state(State::UPRIGHT)?;
+/// assert_eq!(acrobot.step_torque(0.0)?.reward, 1.0);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Swingup;

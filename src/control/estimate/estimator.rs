@@ -36,9 +36,37 @@ const IN_A_STEP: f64 = 1e-6;
 const MOST: f64 = 4.0;
 
 /// Estimates the state of a machine.
+///
+/// ```
+/// # use acrobot::control::estimate::{Estimator, Noise};
+/// # use acrobot::{Params, Portable};
+/// let params = Params { gravity: 0.0, ..Params::DEFAULT }; // so a straight machine turns evenly
+/// let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
+/// let mut estimator = Estimator::<Portable>::new(params, noise)?;
+/// for tick in 0..50 {
+///     estimator.correct([0.1 * f64::from(tick), 0.0])?; // rad
+///     estimator.predict(0.0)?; // N m
+/// }
+/// assert!((estimator.state().dtheta1 - 0.5).abs() < 1e-3); // rad/s
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 pub type Estimator<A> = KalmanFilter<A, 0>;
 
 /// Estimates the state of a machine and its parameters.
+///
+/// ```
+/// # use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
+/// # use acrobot::{Params, Portable};
+/// let std = ParameterStd { mass2: 0.1, ..ParameterStd::default() }; // kg
+/// let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
+/// let mut estimator = ParameterEstimator::<Portable>::new(Params::DEFAULT, std, noise)?;
+/// for _ in 0..100 {
+///     estimator.correct([-0.3311, 1.5708])?; // rad: link 2 stays bent
+///     estimator.predict(5.097)?; // N m, which hold it
+/// }
+/// assert!((estimator.params().mass2 - 1.1).abs() < 0.01); // kg, 0.1 more than given
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 pub type ParameterEstimator<A> = KalmanFilter<A, PARAMETERS>;
 
 /// An extended Kalman filter for the state of a machine and `K` of its parameters: an [`Estimator`]

@@ -19,6 +19,17 @@ const DRIFT: f64 = 3e-4;
 
 /// The standard deviations of what an [`Estimator`](super::Estimator) measures and of what acts on
 /// the machine.
+///
+/// ```
+/// use acrobot::control::estimate::{Estimator, Noise};
+/// use acrobot::{Params, Portable};
+///
+/// let noise = Noise { angle_std: 1.8 / 4096.0, torque_std: 0.05 }; // rad, N m
+/// let mut estimator = Estimator::<Portable>::new(Params::DEFAULT, noise)?;
+/// estimator.correct([0.1, -0.2])?; // the first measurement
+/// assert!((estimator.state_std().unwrap()[0] - noise.angle_std).abs() < 1e-12); // rad
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Noise<S = f64> {

@@ -4,6 +4,16 @@
 pub(super) const PARAMETERS: usize = 10;
 
 /// The standard deviations of parameters, each in its unit: 0 for one that is known.
+///
+/// ```
+/// use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
+/// use acrobot::{Params, Portable, arithmetic::Damped};
+///
+/// let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
+/// let std = ParameterStd { damping1: 0.1, ..ParameterStd::default() }; // N m s/rad
+/// assert!(ParameterEstimator::<Damped<Portable>>::new(Params::DEFAULT, std, noise).is_ok());
+/// assert!(ParameterEstimator::<Portable>::new(Params::DEFAULT, std, noise).is_err());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ParameterStd<S = f64> {

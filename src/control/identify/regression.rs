@@ -21,6 +21,15 @@ const UNITS: [&str; FRICTION] = ["kg m²", "kg m²", "kg m²", "kg m", "kg m", "
 const SINGULAR: f64 = 1e-10;
 
 /// A sample of a recording.
+///
+/// ```
+/// use acrobot::control::identify::Sample;
+///
+/// let counts = [10, -512]; // of encoders with 4,096 for a turn
+/// let angles = counts.map(|count| f64::from(count) / 4096.0 * std::f64::consts::TAU);
+/// let sample = Sample { angles, torques: [0.0, 1.5] }; // N m
+/// assert!((sample.angles[1] + 0.785).abs() < 1e-3); // rad
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// θ1 and θ2, rad, without jumps by whole turns.
@@ -30,7 +39,18 @@ pub struct Sample {
 }
 
 /// A regression of recorded motions: its normal equations, of constant size, so firmware can keep
-/// them while it shakes the machine: [an example](crate::guide::real#2-identify).
+/// them while it shakes the machine: [an example](crate::guide::real#2-identify). A recording at
+/// rest determines no number:
+///
+/// ```
+/// use acrobot::control::identify::{Regression, Sample};
+///
+/// let mut regression = Regression::EMPTY;
+/// // 1 s at 500 Hz; velocities from 5 angles, windows of 0.2 s.
+/// regression.add(&[Sample::default(); 500], 0.002, 9.81, 2, 100)?;
+/// assert_eq!(regression.fit().rank_deficiency, 10);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Regression {
     /// \[R y\]ᵀ \[R y\] of the equations R x = y.
@@ -244,6 +264,16 @@ fn diagonalize(m: &mut [[f64; N]; N]) -> [[f64; N]; N] {
 }
 
 /// The fit of a [`Regression`], in numbers on which a motion depends.
+///
+/// ```
+/// # use acrobot::{Params, control::identify::Fit};
+/// let values = [3.5, 1.25, 1.25, 1.5, 0.5, 0.5, 0.0, 0.0, 0.0, 0.0];
+/// assert_eq!((Fit::NAMES[3], values[3]), ("moment1", 1.5)); // m1 lc1 + m2 l1, kg m
+/// let fit = Fit { values, std_errors: [0.01; 10], rank_deficiency: 0, weakest: [0.0; 10] };
+/// let params = fit.params(Params { mass1: 3.0, ..Params::DEFAULT })?;
+/// assert_eq!(params.mass1, 1.0); // kg, as fitted
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Fit {
     /// The numbers of [`NAMES`](Self::NAMES), in their units.

@@ -26,6 +26,20 @@ const FIRST: (usize, f64) = (3, 0.03);
 /// of about T to 2.3 T are tried on the first three quarters of each recording. Those count that
 /// predict the last quarters best, 3.7 T ahead. A recording of less than 15 T has no such quarter.
 ///
+/// ```
+/// # use acrobot::control::identify::{Sample, identify};
+/// # use acrobot::{Params, Portable, State, arithmetic::Damped, physics::Pendulum};
+/// let mut machine = Pendulum::<Damped<Portable>>::new(Params::SWINGUP, State::HANGING)?;
+/// let recording: [Sample; 1000] = std::array::from_fn(|tick| {
+///     let (state, torque) = (machine.state(), 2.0 * (0.02 * tick as f64).sin()); // N m
+///     machine.step(torque).unwrap();
+///     Sample { angles: [state.theta1, state.theta2], torques: [0.0, torque] }
+/// });
+/// let (found, _) = identify(&[&recording], Params { damping1: 0.0, ..Params::SWINGUP })?;
+/// assert!((found.damping1 - 0.05).abs() < 2e-3); // N m s/rad
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
 /// # Errors
 ///
 /// The errors of [`Regression::add`] and of [`Fit::params`].
@@ -73,6 +87,17 @@ fn in_steps(params: &Params, (least, time): (usize, f64)) -> usize {
 /// The root of the mean square of the errors of angles, rad, if they are predicted `horizon` steps
 /// ahead, from states that follow from seven angles each, or from more at a high rate. 0 for a
 /// recording that is too short.
+///
+/// ```
+/// use acrobot::Params;
+/// use acrobot::control::identify::{Sample, prediction_error};
+///
+/// let params = Params { dt: 0.01, ..Params::DEFAULT };
+/// let held = Sample { angles: [-0.32175, 1.5708], torques: [0.0, 4.6486] }; // rad, N m
+/// let error = |mass2| prediction_error(Params { mass2, ..params }, &[held; 100], 20);
+/// assert!(error(1.0)? < 1e-4 && error(1.1)? > 1e-3); // rad, after 0.2 s
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 ///
 /// # Errors
 ///

@@ -7,6 +7,16 @@ use crate::math::matrix::check_finite;
 use crate::physics::{Dynamics, Pendulum, directions, friction};
 
 /// The torques and forces of a motion.
+///
+/// ```
+/// use acrobot::{Portable, control::model::Forces, physics::Pendulum};
+///
+/// let at_rest = Pendulum::<Portable>::hanging().inverse_dynamics([0.0, 0.0])?;
+/// let Forces { torques, reaction: [_, both], elbow: [_, link2] } = at_rest;
+/// assert_eq!(torques, [0.0, 0.0]); // N m
+/// assert!((both - 19.6).abs() < 1e-12 && (link2 - 9.8).abs() < 1e-12); // N, weights
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Forces<S = f64> {

@@ -10,6 +10,16 @@ use crate::physics::{Pendulum, check_torque};
 /// A linear model in continuous time, ẋ = A x + B u: x is the deviation from a state \[θ1, θ2, θ̇1,
 /// θ̇2\], rad and rad/s, and u that from a torque, N m. [`lqr`](crate::control::regulator::lqr) has
 /// its regulator.
+///
+/// ```
+/// use acrobot::{Params, Portable, State, control::model::LinearModel, physics::Pendulum};
+///
+/// let LinearModel { a, .. } = Pendulum::<Portable>::hanging().linearize(0.0)?;
+/// let leaning = State { theta1: 1e-3, ..State::HANGING }; // rad
+/// let [.., ddtheta1, _] = Pendulum::<Portable>::new(Params::DEFAULT, leaning)?.derivative(0.0);
+/// assert!((ddtheta1 - a[2][0] * 1e-3).abs() < 1e-8); // rad/s²
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LinearModel<S = f64> {

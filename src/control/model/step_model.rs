@@ -11,6 +11,16 @@ use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
 /// A linear model of one step of `dt`, x′ = A x + B u: x is the deviation from a state \[θ1, θ2,
 /// θ̇1, θ̇2\], rad and rad/s, x′ that from the state after the step, and u that from a torque, N m,
 /// which is constant during the step. [`dlqr`](crate::control::regulator::dlqr) has its regulator.
+///
+/// ```
+/// use acrobot::{Portable, control::model::StepModel, physics::Pendulum};
+///
+/// let mut hanging = Pendulum::<Portable>::hanging();
+/// let StepModel { b, .. } = hanging.linearize_step(0.0)?;
+/// hanging.step(1e-3)?; // N m
+/// assert!((hanging.state().dtheta2 - b[3] * 1e-3).abs() < 1e-8); // rad/s
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct StepModel<S = f64> {

@@ -21,6 +21,17 @@ const VISCOUS: f32 = 1.0 / 600.0;
 const DRY: f32 = 1.0 / 60.0;
 
 /// A machine.
+///
+/// ```
+/// # use acrobot::Params;
+/// # use acrobot::control::mpc::{Controller, Settings};
+/// let params = Params { dt: 0.002, ..Params::DEFAULT }; // 500 ticks a second
+/// let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
+/// assert!(Controller::<100>::new(settings).is_ok());
+/// let without_motor = Settings { limit: 0.0, ..settings };
+/// let error = Controller::<100>::new(without_motor).unwrap_err();
+/// assert_eq!(error.to_string(), "limit must be finite and above 0 N m, got 0");
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     /// Its parameters, whose `dt` is the time from a tick to the next.
@@ -53,6 +64,18 @@ impl Settings {
 }
 
 /// What a timer's interrupt does. Plans have `N` decisions.
+///
+/// ```
+/// # use acrobot::Params;
+/// # use acrobot::control::mpc::{Controller, Settings};
+/// let params = Params { dt: 0.002, ..Params::DEFAULT }; // 500 ticks a second
+/// let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
+/// let mut controller = Controller::<100>::new(settings)?;
+/// let torque = controller.tick([512, 0])?; // N m
+/// assert_eq!(torque, 0.0); // there is no plan yet
+/// assert!((controller.state().theta1 - 0.785).abs() < 1e-3); // rad: an eighth of a turn
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Controller<const N: usize> {
     settings: Settings,

@@ -30,6 +30,21 @@ enum Work {
 
 /// What the main loop does. It needs 0.8 KB beside a plan of 44 bytes a decision, and several KB of
 /// stack.
+///
+/// ```
+/// # use acrobot::Params;
+/// # use acrobot::control::mpc::{Controller, Replanner, Settings};
+/// # let params = Params { dt: 0.01, ..Params::DEFAULT };
+/// let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 1 };
+/// let mut controller = Controller::<100>::new(settings)?;
+/// let mut replanner = Replanner::new(settings)?;
+/// for slice in 0..9 {
+///     assert_eq!(controller.tick([100, 0])? < 0.0, slice > 1); // N m, once there is a plan
+///     replanner.exchange(&mut controller);
+///     replanner.work();
+/// }
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Replanner<const N: usize> {
     limit: f32,

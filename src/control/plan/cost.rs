@@ -10,8 +10,19 @@ use crate::physics::{Modeled, Params, State, plus_scaled, positions, wrap};
 
 /// The weights of what a plan costs: the sum of all terms, over all its steps, and of its end. A
 /// larger weight makes its term smaller, at the expense of the others: [a table of what each
-/// does](crate::guide::control#what-a-plan-costs). `Cost { power: 0.5, torque_change: 1.0,
-/// ..Cost::new(&params, limit)? }` spares the motor: less energy, and no jumps of the torque.
+/// does](crate::guide::control#what-a-plan-costs).
+///
+/// ```
+/// use acrobot::Params;
+/// use acrobot::control::plan::{Cost, Problem};
+///
+/// let params = Params::<f64>::DEFAULT;
+/// // Less energy, and no jumps of the torque.
+/// let cost = Cost { power: 0.5, torque_change: 1.0, ..Cost::new(&params, 1.0)? };
+/// assert_eq!(cost.height, 2.0); // m: the tip of the upright machine
+/// let problem = Problem { cost, ..Problem::swing_up(params, 1.0)? }; // N m
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)] // for bindings/c

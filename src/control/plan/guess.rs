@@ -20,6 +20,19 @@ const PUMP: f64 = 60.0;
 impl<A: Arithmetic> Planner<A> {
     /// Fills a plan with a first guess: random torques, and more or less torque that pumps energy.
     ///
+    /// ```
+    /// # use acrobot::numpy::Pcg64;
+    /// # use acrobot::control::plan::{Knot, Planner, Problem};
+    /// # use acrobot::{Fast, Params, State};
+    /// let problem = Problem::swing_up(Params { dt: 0.02, ..Params::DEFAULT }, 5.0)?; // N m
+    /// let mut planner = Planner::<Fast>::new(&problem)?;
+    /// let mut plan = [Knot::EMPTY; 100];
+    /// planner.guess(State::HANGING, &mut Pcg64::new(1), &mut plan)?;
+    /// assert!(plan.iter().all(|knot| knot.torque.abs() <= 5.0)); // N m
+    /// planner.improve(State::HANGING, 150, &mut plan)?;
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
+    ///
     /// # Errors
     ///
     /// A number of the state is not finite, or extreme parameters make a torque overflow.

@@ -8,6 +8,18 @@ use crate::physics::State;
 /// A plan: its knots, one for each step, and the feedback that holds its target after them. `K` is
 /// an array, a slice or a `Vec` of [`Knot`]s. It is plain data, so a `const` can be one, and what
 /// follows it needs no planner: [an example](crate::guide::control#a-plan-in-firmware).
+///
+/// ```
+/// use acrobot::control::plan::{Knot, Plan};
+/// use acrobot::control::regulator::BoundedRegulator;
+/// use acrobot::{Fast, Params, State};
+///
+/// let after = *BoundedRegulator::<Fast>::new(Params::DEFAULT, 10.0)?.feedback();
+/// let plan = Plan { knots: [Knot::open(1.0), Knot::open(-2.0)], after };
+/// assert_eq!(plan.torque(1, State::HANGING), -2.0); // N m, of a knot
+/// assert_eq!(plan.torque(2, State::UPRIGHT), 0.0); // holds
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Plan<S, K> {
@@ -19,8 +31,8 @@ pub struct Plan<S, K> {
 
 impl<S: Real, K: AsRef<[Knot<S>]>> Plan<S, K> {
     /// The torque that follows the plan from a measured state, N m: in step `step`, counted from 0,
-    /// or after the plan. [`saturate`](crate::physics::saturate) limits it to that of a motor, which
-    /// needs more torque than the plan to correct deviations. From an extreme state it can be
+    /// or after the plan. [`saturate`](crate::physics::saturate) limits it to that of a motor,
+    /// which needs more torque than the plan to correct deviations. From an extreme state it can be
     /// infinite or NaN.
     #[must_use]
     pub fn torque(&self, step: usize, state: State<S>) -> S {
@@ -32,6 +44,15 @@ impl<S: Real, K: AsRef<[Knot<S>]>> Plan<S, K> {
 }
 
 /// A step of a plan.
+///
+/// ```
+/// use acrobot::{State, control::plan::Knot};
+///
+/// let knot = Knot::new([0.0; 4], 1.0, [-10.0, 0.0, 0.0, 0.0]); // N m, and N m per rad
+/// assert_eq!(knot.follow(State::HANGING), 1.0); // N m
+/// assert_eq!(knot.follow(State { theta1: 0.25, ..State::HANGING }), 3.5);
+/// assert_eq!(Knot::open(1.0).follow(State::UPRIGHT), 1.0); // without feedback
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)] // for bindings/c

@@ -36,6 +36,18 @@ pub(super) fn len_of_try(tried: u32, steps: usize) -> usize {
 ///
 /// No velocity of a plan reaches the bounds of the parameters, except [for a simulation that clamps
 /// there](Self::with_velocity_clamp).
+///
+/// ```
+/// use acrobot::control::plan::{Knot, Planner, Problem};
+/// use acrobot::{Fast, Params, State, numpy::Pcg64};
+///
+/// let problem = Problem::swing_up(Params { dt: 0.02, ..Params::DEFAULT }, 5.0)?; // N m
+/// let mut memory = [Knot::EMPTY; 250]; // 5 s
+/// let mut planner = Planner::<Fast>::new(&problem)?;
+/// let plan = planner.plan_into(State::HANGING, 64, &mut Pcg64::new(1), &mut memory)?;
+/// assert!(plan.torque(0, State::HANGING).abs() <= 5.0); // N m
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Planner<A: Arithmetic> {
     pub(super) regulator: BoundedRegulator<A>,
@@ -69,6 +81,18 @@ impl<A: Arithmetic> Planner<A> {
 
     /// The same planner for a simulation that clamps velocities at the bounds of its parameters, as
     /// Gymnasium's does. Plans may use that as a brake.
+    ///
+    /// ```
+    /// # use acrobot::control::plan::{Planner, Problem};
+    /// # use acrobot::{Fast, Params, State};
+    /// let params = Params { dt: 0.02, max_velocity2: 0.5, ..Params::DEFAULT }; // rad/s
+    /// let mut planner = Planner::<Fast>::new(&Problem::swing_up(params, 10.0)?)?; // N m
+    /// let leaning = State { theta1: 3.1, ..State::UPRIGHT }; // rad
+    /// assert!(!planner.regulator().holds_from(leaning)); // link 2 would turn faster
+    /// planner = planner.with_velocity_clamp();
+    /// assert!(planner.regulator().holds_from(leaning));
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     #[must_use]
     pub fn with_velocity_clamp(mut self) -> Self {
         self.regulator = self.regulator.with_velocity_clamp();
@@ -118,6 +142,19 @@ impl<A: Arithmetic> Planner<A> {
     /// Improves a plan by at most so many iterations. The plan then begins in the state `start`, so
     /// the rest of a plan can be planned again while the machine moves. Returns the cost of the
     /// plan: the lower, the better.
+    ///
+    /// ```
+    /// # use acrobot::control::plan::{Knot, Planner, Problem};
+    /// # use acrobot::{Fast, Params, State};
+    /// let problem = Problem::swing_up(Params { dt: 0.02, ..Params::DEFAULT }, 5.0)?; // N m
+    /// let mut planner = Planner::<Fast>::new(&problem)?;
+    /// let mut plan = [Knot::open(0.0); 100]; // 2 s without a torque
+    /// let before = planner.improve(State::HANGING, 0, &mut plan)?;
+    /// // Measured meanwhile.
+    /// let leaning = State { theta1: 0.1, ..State::HANGING };
+    /// assert!(planner.improve(leaning, 10, &mut plan)? < before);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     ///
     /// # Errors
     ///

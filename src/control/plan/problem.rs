@@ -5,6 +5,17 @@ use crate::error::{Error, Range};
 use crate::physics::{Modeled, Params, State};
 
 /// A machine, where it is to go, and what the way there costs.
+///
+/// ```
+/// use acrobot::control::plan::{Planner, Problem};
+/// use acrobot::{Fast, Params, State};
+///
+/// let problem = Problem::swing_up(Params { dt: 0.02, ..Params::DEFAULT }, 5.0)?; // N m
+/// assert_eq!(problem.target, State::UPRIGHT);
+/// let brake = Problem { target: State::HANGING, ..problem };
+/// assert!(Planner::<Fast>::new(&brake)?.regulator().holds_from(State::HANGING));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Problem<S = f64> {

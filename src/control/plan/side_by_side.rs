@@ -23,8 +23,20 @@ type Owned<S> = Plan<S, Vec<Knot<S>>>;
 
 impl<A: Arithmetic> Planner<A> {
     /// Plans from a state, with at most so many steps, and 16 tries side by side after the first
-    /// ten. It returns the plan of [`plan_into`](Self::plan_into), leaves the generator as that does, and has the same bits
-    /// at each [level of SIMD](Self::set_simd_level).
+    /// ten. It returns the plan of [`plan_into`](Self::plan_into), leaves the generator as that
+    /// does, and has the same bits at each [level of SIMD](Self::set_simd_level).
+    ///
+    /// ```
+    /// # use acrobot::batch::SimdLevel;
+    /// # use acrobot::control::plan::{Planner, Problem};
+    /// # use acrobot::{Fast, Params, State, numpy::Pcg64};
+    /// let problem = Problem::swing_up(Params { dt: 0.02, ..Params::DEFAULT }, 5.0)?; // N m
+    /// let mut planner = Planner::<Fast>::new(&problem)?;
+    /// let plan = planner.plan(State::HANGING, 64, &mut Pcg64::new(1), 250)?; // at most 5 s
+    /// planner.set_simd_level(SimdLevel::Baseline);
+    /// assert_eq!(planner.plan(State::HANGING, 64, &mut Pcg64::new(1), 250)?, plan);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     ///
     /// # Errors
     ///
@@ -87,6 +99,18 @@ impl<A: Arithmetic> Planner<A> {
 
     /// [Improves](Self::improve) plans side by side, each from its own state. Returns their costs,
     /// which are infinite where the numbers overflow.
+    ///
+    /// ```
+    /// # use acrobot::control::plan::{Knot, Planner, Problem};
+    /// # use acrobot::{Fast, Params, State};
+    /// let problem = Problem::swing_up(Params { dt: 0.02, ..Params::DEFAULT }, 5.0)?; // N m
+    /// let mut planner = Planner::<Fast>::new(&problem)?;
+    /// let mut plans = [[Knot::EMPTY; 100]; 2];
+    /// let starts = [State::HANGING, State { theta1: 1.0, ..State::HANGING }]; // rad
+    /// let costs = planner.improve_each(&starts, 10, &mut plans)?;
+    /// assert!(costs[1] < costs[0]);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     ///
     /// # Errors
     ///

@@ -14,10 +14,9 @@ const PUMP: f64 = 2.0;
 /// later: the acrobot swings chaotically until it is in a state from which the regulator holds.
 ///
 /// ```
-/// use acrobot::control::plan::SwingUp;
-/// use acrobot::physics::Pendulum;
-/// use acrobot::{Params, Portable, State};
-///
+/// # use acrobot::control::plan::SwingUp;
+/// # use acrobot::physics::Pendulum;
+/// # use acrobot::{Params, Portable, State};
 /// let params = Params { dt: 0.02, ..Params::DEFAULT };
 /// let mut swing_up = SwingUp::<Portable>::new(params, 10.0)?; // N m
 /// let mut machine = Pendulum::<Portable>::new(params, State { theta1: 0.1, ..State::HANGING })?;

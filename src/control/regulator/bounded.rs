@@ -47,8 +47,9 @@ const FARTHER: f64 = 1.02;
 ///
 /// let params = Params { dt: 0.02, ..Params::DEFAULT };
 /// let regulator = BoundedRegulator::<Portable>::new(params, 10.0)?; // N m
-/// let leaning = |rad: f64| State { theta1: State::<f64>::UPRIGHT.theta1 - rad, ..State::UPRIGHT };
+/// let leaning = |rad| State { theta1: std::f64::consts::PI - rad, ..State::UPRIGHT };
 /// assert!(regulator.holds_from(leaning(0.05)) && !regulator.holds_from(leaning(0.5)));
+/// assert_eq!(regulator.torque(leaning(0.05)), -10.0); // N m, its largest
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -85,6 +86,15 @@ impl<A: Arithmetic> BoundedRegulator<A> {
     }
 
     /// As [`new`](Self::new), for another equilibrium and the torque that holds it, N m.
+    ///
+    /// ```
+    /// # use acrobot::control::regulator::BoundedRegulator;
+    /// # use acrobot::{Params, Portable, State};
+    /// let params = Params { dt: 0.02, ..Params::DEFAULT };
+    /// let brake = BoundedRegulator::<Portable>::about(params, 10.0, State::HANGING, 0.0)?; // N m
+    /// assert!(brake.holds_from(State { theta1: 0.3, ..State::HANGING })); // rad
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     ///
     /// # Errors
     ///
@@ -168,6 +178,17 @@ impl<A: Arithmetic> BoundedRegulator<A> {
 
     /// The regulator of a simulation that clamps velocities at the bounds of its parameters, as
     /// Gymnasium's does: reaching one is no failure.
+    ///
+    /// ```
+    /// # use acrobot::control::regulator::BoundedRegulator;
+    /// # use acrobot::{Params, Portable, State};
+    /// let params = Params { dt: 0.02, max_velocity2: 0.5, ..Params::DEFAULT }; // rad/s
+    /// let regulator = BoundedRegulator::<Portable>::new(params, 10.0)?; // N m
+    /// let leaning = State { theta1: 3.1, ..State::UPRIGHT }; // rad
+    /// assert!(!regulator.holds_from(leaning)); // link 2 would turn faster
+    /// assert!(regulator.with_velocity_clamp().holds_from(leaning));
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     #[must_use]
     pub fn with_velocity_clamp(mut self) -> Self {
         let infinity = A::Scalar::from_f64(f64::INFINITY);

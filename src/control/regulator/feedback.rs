@@ -9,6 +9,17 @@ use crate::physics::State;
 ///
 /// With dry friction there are two gains. At rest dry friction acts like strong viscous friction,
 /// in motion hardly at all, and the gains for both have opposite signs.
+///
+/// ```
+/// use acrobot::State;
+/// use acrobot::control::regulator::{Feedback, Region};
+///
+/// const K: Region = Region { gain: [-180.0, -45.0, -86.0, -28.0], ..Region::NONE };
+/// const NONE: Region = Region::NONE;
+/// const HOLD: Feedback =
+///     Feedback { target: State::UPRIGHT, torque: 0.0, moving: K, resting: NONE, reach: 0.0 };
+/// assert_eq!(HOLD.torque(State { dtheta1: 0.5, ..State::UPRIGHT }), 43.0); // N m
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)] // for bindings/c

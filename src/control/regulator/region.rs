@@ -100,6 +100,17 @@ fn with_velocities(by: f64) -> Matrix {
 }
 
 /// A gain and the region in which its torque lasts.
+///
+/// ```
+/// use acrobot::control::regulator::{BoundedRegulator, Region};
+/// use acrobot::{Params, Portable};
+///
+/// let params = Params { dt: 0.02, ..Params::DEFAULT };
+/// let regulator = BoundedRegulator::<Portable>::new(params, 10.0)?; // N m
+/// let Region { factor: [[f, ..], ..], .. } = regulator.feedback().moving;
+/// assert!((1.0 / f - 0.0108).abs() < 1e-4); // rad: the largest lean of link 1 in the region
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)] // for bindings/c
