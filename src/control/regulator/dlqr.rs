@@ -67,13 +67,13 @@ pub fn dlqr<S: Real>(model: &StepModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<
     let q = check_weights("q", q)?;
     Range::AboveZero.check("r", r, "per (N m)²")?;
 
-    let problem = Problem { a, b, q, r };
-    let (gain, cost_to_go) = problem.solve()?;
+    let problem = Problem::<true> { a, inputs: [(b, r)], q };
+    let ([gain], cost_to_go) = problem.solve()?;
     let regulator =
         Lqr { gain: gain.map(S::from_f64), cost_to_go: cost_to_go.map(|row| row.map(S::from_f64)) };
     check_finite("gain", &regulator.gain)?;
     check_finite("cost_to_go", regulator.cost_to_go.as_flattened())?;
-    if !problem.is_stable(&regulator.gain.map(S::to_f64)) {
+    if !problem.is_stable(&[regulator.gain.map(S::to_f64)]) {
         let error = S::EPSILON.to_f64();
         return Err(Error::IllConditioned { error });
     }
