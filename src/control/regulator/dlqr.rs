@@ -60,24 +60,41 @@ impl<S: Real> Lqr<S> {
 /// [`Error::OutOfRange`] for an `r` that is not above 0; `NotFinite`, `NotSymmetric`,
 /// `NotSemidefinite`, `NotStabilizable`, `NotDetectable` and `IllConditioned`.
 pub fn dlqr<S: Real>(model: &StepModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, Error> {
-    let a = model.a.map(|row| row.map(S::to_f64));
-    let (b, r) = (model.b.map(S::to_f64), r.to_f64());
+    let problem: Problem<true> = problem(&model.a, &model.b, q, r)?;
+    let ([gain], cost_to_go) = problem.solve()?;
+    rounded(&gain, &cost_to_go, |gain| problem.is_stable(&[*gain]))
+}
+
+/// A checked problem.
+pub(super) fn problem<S: Real, const STEPS: bool>(
+    a: &Matrix<S>,
+    b: &[S; 4],
+    q: &Matrix<S>,
+    r: S,
+) -> Result<Problem<STEPS>, Error> {
+    let a = a.map(|row| row.map(S::to_f64));
+    let (b, r) = (b.map(S::to_f64), r.to_f64());
     check_finite("a", a.as_flattened())?;
     check_finite("b", &b)?;
     let q = check_weights("q", q)?;
     Range::AboveZero.check("r", r, "per (N m)²")?;
+    Ok(Problem { a, inputs: [(b, r)], q })
+}
 
-    let problem = Problem::<true> { a, inputs: [(b, r)], q };
-    let ([gain], cost_to_go) = problem.solve()?;
+/// A regulator whose gain is stable as the scalar rounds it.
+pub(super) fn rounded<S: Real>(
+    gain: &[f64; 4],
+    cost_to_go: &Matrix,
+    is_stable: impl Fn(&[f64; 4]) -> bool,
+) -> Result<Lqr<S>, Error> {
     let regulator =
         Lqr { gain: gain.map(S::from_f64), cost_to_go: cost_to_go.map(|row| row.map(S::from_f64)) };
     check_finite("gain", &regulator.gain)?;
     check_finite("cost_to_go", regulator.cost_to_go.as_flattened())?;
-    if !problem.is_stable(&[regulator.gain.map(S::to_f64)]) {
-        let error = S::EPSILON.to_f64();
-        return Err(Error::IllConditioned { error });
+    match is_stable(&regulator.gain.map(S::to_f64)) {
+        true => Ok(regulator),
+        false => Err(Error::IllConditioned { error: S::EPSILON.to_f64() }),
     }
-    Ok(regulator)
 }
 
 /// The weights, symmetric to the last digit: products such as G W Gᵀ are so only up to rounding.
