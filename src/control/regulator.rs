@@ -1,6 +1,7 @@
 //! Linear-quadratic regulators, with a torque of any size and with that of a motor.
 
 mod bounded;
+mod dlqe;
 mod dlqr;
 mod double;
 mod equilibrium;
@@ -13,6 +14,7 @@ mod tvlqr;
 pub use bounded::BoundedRegulator;
 pub(super) use bounded::{is_below, is_near};
 pub(super) use dlqr::check_weights;
+pub use dlqe::{Lqe, dlqe};
 pub use dlqr::{Lqr, dlqr};
 pub use feedback::Feedback;
 pub use lqr::lqr;

@@ -1,0 +1,71 @@
+//! The steady-state Kalman filter of a model of one step.
+
+use super::dlqr::check_weights;
+use super::double::narrow;
+use super::riccati::Problem;
+use crate::control::model::StepModel;
+use crate::error::{Error, Range};
+use crate::math::Real;
+use crate::math::matrix::{apply, check_finite, identity, scale, transpose};
+
+/// A steady-state Kalman filter: of all linear filters, the one with the least variances of its
+/// errors after many steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Lqe<S = f64> {
+    /// L by rows, for both measured angles: it corrects the deviation x by L (y − \[x1, x2\]),
+    /// before the [`StepModel`] predicts the next one. python-control's L is A L, which does both.
+    pub gain: [[S; 2]; 4],
+    /// P, symmetric: the covariance of the errors of x before the correction, as python-control's.
+    pub prior_covariance: [[S; 4]; 4],
+}
+
+/// The [steady-state Kalman filter](Lqe) of a model of one step whose angles are measured.
+///
+/// `w` is the covariance of the noise that each step adds to x, by rows, rad², rad²/s and rad²/s²:
+/// symmetric and positive semidefinite, both up to 16 machine epsilons of its largest element. `s`
+/// are the variances of both measurements, rad²; above 0. The gain depends only on their ratios.
+///
+/// A filter is the regulator of the transposed model, so all else is as in
+/// [`dlqr`](super::dlqr::dlqr).
+///
+/// # Errors
+///
+/// [`Error::OutOfRange`] for a variance that is not above 0; `NotFinite`, `NotSymmetric`,
+/// `NotSemidefinite`, `NotObservable`, `NotExcited` and `IllConditioned`.
+pub fn dlqe<S: Real>(
+    model: &StepModel<S>,
+    w: &[[S; 4]; 4],
+    s: [S; 2],
+) -> Result<Lqe<S>, Error> {
+    let a = model.a.map(|row| row.map(S::to_f64));
+    check_finite("a", a.as_flattened())?;
+    let q = check_weights("w", w)?;
+    let [s1, s2] = s.map(S::to_f64);
+    for s in [s1, s2] {
+        Range::AboveZero.check("s", s, "rad²")?;
+    }
+    let [angle1, angle2, ..] = identity();
+    let inputs = [(angle1, s1), (angle2, s2)];
+    let (dual, _, unit) = Problem::<true, 2> { a: transpose(&a), inputs, q }.scaled()?;
+    let (_, covariance) = dual.solve_scaled().map_err(|error| match error {
+        Error::NotStabilizable => Error::NotObservable,
+        Error::NotDetectable => Error::NotExcited,
+        error => error,
+    })?;
+    // Without A, which predicts.
+    let ([row1, row2], _) = Problem { a: identity(), ..dual }.gain(&covariance);
+    let mut covariance = narrow(&covariance);
+    scale(&mut covariance, unit);
+
+    let [row1, row2] = [row1, row2].map(|row| row.map(S::from_f64));
+    let zeros = [S::ZERO; 4];
+    let gain = transpose(&[row1, row2, zeros, zeros]).map(|[x, y, ..]| [x, y]);
+    let prior_covariance = covariance.map(|row| row.map(S::from_f64));
+    check_finite("gain", gain.as_flattened())?;
+    check_finite("prior_covariance", prior_covariance.as_flattened())?;
+    match dual.is_stable(&[row1, row2].map(|row| apply(&a, &row.map(S::to_f64)))) {
+        true => Ok(Lqe { gain, prior_covariance }),
+        false => Err(Error::IllConditioned { error: S::EPSILON.to_f64() }),
+    }
+}
