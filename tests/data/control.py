@@ -249,8 +249,9 @@ def rates(rng):
     for number in range(170):
         spread = number % 4
         units = decades(rng, -spread, spread, 4)
-        a = rng.normal(size=(4, 4)) * decades(rng, -6, 6) * units[:, None] / units
-        b = rng.normal(size=4) * decades(rng, -spread, spread, 4)
+        rate = decades(rng, -6, 6)
+        a = rng.normal(size=(4, 4)) * units[:, None] / units * rate
+        b = rng.normal(size=4) * decades(rng, -spread, spread, 4) * rate
         root = np.float32(rng.normal(size=(4, 4)) * decades(rng, -spread, spread, 4))
         q = root.T @ root if rng.random() < 0.5 else np.diag(decades(rng, -6, 6, 4))
         yield "any", a, b, (q + q.T) / 2, decades(rng, -12, 8)

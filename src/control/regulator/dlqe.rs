@@ -13,11 +13,23 @@ use crate::math::matrix::{apply, check_finite, identity, scale, transpose};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Lqe<S = f64> {
-    /// L by rows, for both measured angles: it corrects the deviation x by L (y − \[x1, x2\]),
-    /// before the [`StepModel`] predicts the next one. python-control's L is A L, which does both.
+    /// L by rows: the correction of each deviation by both measured angles. python-control's L is
+    /// A L, which also predicts the step.
     pub gain: [[S; 2]; 4],
-    /// P, symmetric: the covariance of the errors of x before the correction, as python-control's.
+    /// P, symmetric: the covariance of the errors before the correction, as python-control's P.
     pub prior_covariance: [[S; 4]; 4],
+}
+
+impl<S: Real> Lqe<S> {
+    /// The deviation x, rad and rad/s, corrected by the measured deviations y of both angles, rad.
+    #[must_use]
+    pub fn correct(&self, mut x: [S; 4], [y1, y2]: [S; 2]) -> [S; 4] {
+        let [x1, x2, ..] = x;
+        for (x, [l1, l2]) in x.iter_mut().zip(self.gain) {
+            *x = *x + l1 * (y1 - x1) + l2 * (y2 - x2);
+        }
+        x
+    }
 }
 
 /// The [steady-state Kalman filter](Lqe) of a model of one step whose angles are measured.
@@ -29,15 +41,24 @@ pub struct Lqe<S = f64> {
 /// A filter is the regulator of the transposed model, so all else is as in
 /// [`dlqr`](super::dlqr::dlqr).
 ///
+/// ```
+/// use acrobot::control::regulator::dlqe;
+/// use acrobot::physics::Pendulum;
+/// use acrobot::{Params, Portable, State};
+///
+/// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
+/// let w = [[0.0; 4], [0.0; 4], [0.0, 0.0, 1e-4, 0.0], [0.0, 0.0, 0.0, 1e-4]];
+/// let lqe = dlqe(&upright.linearize_step(0.0)?, &w, [1e-6; 2])?;
+/// let [x1, _, dx1, _] = lqe.correct([0.0; 4], [0.01, 0.0]);
+/// assert!(x1 > 0.0 && dx1 > 0.0);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
 /// # Errors
 ///
 /// [`Error::OutOfRange`] for a variance that is not above 0; `NotFinite`, `NotSymmetric`,
 /// `NotSemidefinite`, `NotObservable`, `NotExcited` and `IllConditioned`.
-pub fn dlqe<S: Real>(
-    model: &StepModel<S>,
-    w: &[[S; 4]; 4],
-    s: [S; 2],
-) -> Result<Lqe<S>, Error> {
+pub fn dlqe<S: Real>(model: &StepModel<S>, w: &[[S; 4]; 4], s: [S; 2]) -> Result<Lqe<S>, Error> {
     let a = model.a.map(|row| row.map(S::to_f64));
     check_finite("a", a.as_flattened())?;
     let q = check_weights("w", w)?;

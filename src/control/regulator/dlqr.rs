@@ -7,13 +7,13 @@ use crate::math::Real;
 use crate::math::matrix::{Matrix, add, add_scaled, check_finite, dot, largest, scale, transpose};
 
 /// A linear-quadratic regulator: of all state feedbacks that make every deviation vanish, the one
-/// with the least sum of xᵀ Q x + R u² over all steps.
+/// with the least sum of xᵀ Q x + R u² over all steps, or the least integral over all time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Lqr<S = f64> {
     /// K in u = −K x, N m per rad and per rad/s.
     pub gain: [S; 4],
-    /// P, symmetric: xᵀ P x is the cost of all steps from x on.
+    /// P, symmetric: xᵀ P x is the sum or the integral from x on.
     pub cost_to_go: [[S; 4]; 4],
 }
 
@@ -49,9 +49,21 @@ impl<S: Real> Lqr<S> {
 ///
 /// let params = Params { dt: 0.02, ..Params::DEFAULT };
 /// let upright = Pendulum::<Portable>::new(params, State::UPRIGHT)?;
-/// let identity = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
-/// let lqr = dlqr(&upright.linearize_step(0.0)?, &identity, 1.0)?;
+/// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]]; // θ1 alone
+/// let lqr = dlqr(&upright.linearize_step(0.0)?, &q, 1.0)?;
 /// assert!(lqr.torque([0.01, 0.0, 0.0, 0.0]) > 0.0); // against a lean
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// A model in continuous time does not compile:
+///
+/// ```compile_fail,E0308
+/// # use acrobot::control::regulator::dlqr;
+/// # use acrobot::physics::Pendulum;
+/// # use acrobot::{Params, Portable, State};
+/// # let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
+/// # let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
+/// let lqr = dlqr(&upright.linearize(0.0)?, &q, 1.0)?;
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 ///

@@ -10,9 +10,33 @@ use crate::math::matrix::{apply, congruence, diagonal, inner, product, scale, sp
 /// The [linear-quadratic regulator](Lqr) of a model in continuous time: of all torques, those with
 /// the least integral of xᵀ Q x + R u².
 ///
-/// As [`dlqr`](super::dlqr::dlqr) in all else, after a Cayley transform whose unit of time follows
-/// from the model (E. K.-W. Chu, H.-Y. Fan and W.-W. Lin, *A Structure-Preserving Doubling
+/// All else is as in [`dlqr`](super::dlqr::dlqr), after a Cayley transform, whose unit of time
+/// follows from the model (E. K.-W. Chu, H.-Y. Fan and W.-W. Lin, *A Structure-Preserving Doubling
 /// Algorithm for Continuous-Time Algebraic Riccati Equations*, 2005).
+///
+/// ```
+/// use acrobot::control::regulator::lqr;
+/// use acrobot::physics::Pendulum;
+/// use acrobot::{Params, Portable, State};
+///
+/// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
+/// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]]; // θ1 alone
+/// let lqr = lqr(&upright.linearize(0.0)?, &q, 1.0)?;
+/// assert!(lqr.torque([0.01, 0.0, 0.0, 0.0]) > 0.0); // against a lean
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// A model of steps does not compile:
+///
+/// ```compile_fail,E0308
+/// # use acrobot::control::regulator::lqr;
+/// # use acrobot::physics::Pendulum;
+/// # use acrobot::{Params, Portable, State};
+/// # let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
+/// # let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
+/// let lqr = lqr(&upright.linearize_step(0.0)?, &q, 1.0)?;
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 ///
 /// # Errors
 ///
@@ -32,23 +56,29 @@ pub fn lqr<S: Real>(model: &LinearModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr
     rounded(&apply(&to, &gain), &cost_to_go, |gain| problem.is_stable(&[apply(&from, gain)]))
 }
 
-/// A quarter to an eighth of the time in which the fastest motion grows or vanishes by a factor of
-/// e, or swings by a radian, with and without the regulator. A power of 2.
+/// The unit of time of the Cayley transform: a power of 2 for which rates are near 1.
 ///
-/// The largest |λ| of A is at most 1.03 times the largest |tr Aᵏ|^(1/k) for k from 1 to 4, and at
-/// least a quarter of it. The regulator's are near (vᵀ Q v / R)^(1/2k) for v = Aᵏ⁻¹ B, if this is
-/// larger. No unit of the state changes these numbers.
+/// The model's fastest rate is near the largest |tr Aᵏ|^(1/k) for k from 1 to 4: the largest |λ| of
+/// A is at least a quarter of it and at most 1.03 times it. The regulator's is near the largest
+/// (vᵀ Q v / R)^(1/2k) with v = Aᵏ⁻¹ B. No unit of the state changes these. If the regulator is
+/// faster, the rate is between both. The unit is a quarter, because no motion may grow at a rate
+/// of 1.
 fn time_unit(problem: &Problem<false>) -> f64 {
     let [(b, r)] = problem.inputs;
     let root = Real::sqrt(r);
     let (mut power, mut v) = (problem.a, b.map(|x| x / root));
-    let mut rate = -1022;
-    for k in 1..=4 {
-        let trace: f64 = diagonal(&power).into_iter().sum();
+    // 24 times logarithms to base 2.
+    let [mut own, mut fastest] = [i32::MIN; 2];
+    for by in [12, 6, 4, 3] {
+        let trace = diagonal(&power).into_iter().sum();
         let weight = inner(&v, &apply(&problem.q, &v));
-        rate = rate.max(exponent(trace).div_euclid(k)).max(exponent(weight).div_euclid(2 * k));
+        own = own.max(exponent(trace) * by * 2);
+        fastest = fastest.max(exponent(weight) * by);
         (power, v) = (product(&power, &problem.a), apply(&problem.a, &v));
     }
+    // A double integrator has no rate of its own.
+    let between = (own.max(fastest - 480) + fastest).div_euclid(2);
+    let rate = own.max(between).div_euclid(24);
     f64::from_bits(((1021 - rate).max(1) as u64) << 52)
 }
 

@@ -15,8 +15,8 @@ use super::double::{Double, MINUS_ONE, ONE, narrow, widen};
 use crate::error::Error;
 use crate::math::Real;
 use crate::math::matrix::{
-    Matrix, add, add_outer, add_scaled, apply, congruence, diagonal, divide, identity, inner, largest,
-    product, scale, spread, symmetrize, transpose,
+    Matrix, add, add_outer, add_scaled, apply, congruence, diagonal, divide, identity, inner,
+    largest, product, scale, spread, symmetrize, transpose,
 };
 
 /// A motion persists if it does not vanish within 2 to the power of this number of steps.
