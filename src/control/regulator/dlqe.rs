@@ -75,7 +75,7 @@ pub fn dlqe<S: Real>(model: &StepModel<S>, w: &[[S; 4]; 4], s: [S; 2]) -> Result
         error => error,
     })?;
     // Without A, which predicts.
-    let ([row1, row2], _) = Problem { a: identity(), ..dual }.gain(&covariance);
+    let ([row1, row2], ..) = Problem { a: identity(), ..dual }.gain(&covariance);
     let mut covariance = narrow(&covariance);
     scale(&mut covariance, unit);
 

@@ -138,33 +138,35 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
         Some([a, g, p])
     }
 
-    /// The best gain before a cost P, and at least how much that weights an input.
+    /// The best gain before a cost P, and the columns and the divisor of B (R + Bᵀ P B)⁻¹, or of
+    /// B R⁻¹ in continuous time.
     #[inline(never)]
-    pub(super) fn gain(&self, p: &Matrix<Double>) -> (Gain<N>, f64) {
+    pub(super) fn gain(&self, p: &Matrix<Double>) -> (Gain<N>, Gain<N>, f64) {
         let a = transpose(&widen(&self.a));
         let mut rows = self.inputs.map(|(b, r)| {
             let b = b.map(Double::from);
             let (p_b, r) = (apply(p, &b), Double::from(r));
             match STEPS {
-                true => (apply(&a, &p_b), r + inner(&b, &p_b), p_b),
-                false => (p_b, r, p_b),
+                true => (apply(&a, &p_b), b, r + inner(&b, &p_b), p_b),
+                false => (p_b, b, r, p_b),
             }
         });
-        let mut most = 1.0;
-        if let ([(x, v, p_b), (y, w, _)], [_, (b, _)]) = (rows.as_mut_slice(), &self.inputs[..]) {
+        if let [(x, b, v, p_b), (y, c, w, _)] = rows.as_mut_slice() {
             // Cramer's rule.
-            let shared = inner(&b.map(Double::from), p_b) * MINUS_ONE;
-            let before = *x;
-            for (x, other, weight) in [(&mut *x, *y, *w), (y, before, *v)] {
-                *x = x.map(|x| weight * x);
-                add_scaled(x, shared, &other);
+            let shared = inner(c, p_b) * MINUS_ONE;
+            for (one, other) in [(x, y), (b, c)] {
+                let before = *one;
+                *one = one.map(|x| *w * x);
+                add_scaled(one, shared, other);
+                *other = other.map(|x| *v * x);
+                add_scaled(other, shared, &before);
             }
-            most = f64::from(*v).max(f64::from(*w));
             *v = *v * *w + shared * shared * MINUS_ONE;
             *w = *v;
         }
-        let weight = rows.iter().fold(0.0, |_, (_, weight, _)| f64::from(*weight)); // of each
-        (rows.map(|(row, ..)| row.map(|x| f64::from(x) / weight)), weight / most)
+        let divisor = rows.iter().fold(1.0, |_, (.., divisor, _)| f64::from(*divisor)); // of all
+        let gain = rows.map(|(x, ..)| x.map(|x| f64::from(x) / divisor));
+        (gain, rows.map(|(_, b, ..)| b.map(f64::from)), divisor)
     }
 
     /// Newton's method, from a gain that stabilizes. It alternates between the cost of a gain and
@@ -189,7 +191,7 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
             for (row, missing) in cost.iter_mut().zip(&widen(&missing)) {
                 add_scaled(row, ONE, missing);
             }
-            let (better, weight) = self.gain(&cost);
+            let (better, columns, divisor) = self.gain(&cost);
             for (k, better) in gain.iter_mut().zip(&better) {
                 add_scaled(k, -1.0, better);
             }
@@ -199,7 +201,8 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
             let size = largest(gain.as_flattened());
             error = change / size;
             if change <= 16.0 * f64::EPSILON * size {
-                let rounding = self.rounding(&gain, &narrow(&cost), &missing, &closed) / weight;
+                let rounding = self.rounding(&gain, &narrow(&cost), &missing, &closed, &columns);
+                let rounding = rounding / divisor;
                 error = rounding / size;
                 if error <= TOLERANCE || size == 0.0 && rounding.is_finite() {
                     return Ok((gain, cost));
@@ -263,16 +266,22 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
         lyapunov(&power, &stage)
     }
 
-    /// A bound of the error that rounding leaves in a gain, times the weight of the input;
+    /// A bound of the error that rounding leaves in a gain, times the divisor of the columns;
     /// infinite if the cost still changes.
     ///
     /// The rounding N of the residual has |N_ij| ≤ s_i s_j, because |P_ij|² ≤ P_ii P_jj. So N is
     /// between −4 diag(s²) and 4 diag(s²), and the error E of P between −L and L, if L is the cost
     /// of the latter. Then |xᵀ E y|² ≤ xᵀ L x · yᵀ L y, whatever the units of the state.
     #[inline(never)]
-    fn rounding(&self, gain: &Gain<N>, p: &Matrix, missing: &Matrix, closed: &Matrix) -> f64 {
-        /// 2⁻¹⁰², times 64 for the number of operations and the factor 4. Sums over inputs add a
-        /// factor of N to s² and one of √N to the result.
+    fn rounding(
+        &self,
+        gain: &Gain<N>,
+        p: &Matrix,
+        missing: &Matrix,
+        closed: &Matrix,
+        columns: &Gain<N>,
+    ) -> f64 {
+        /// 2⁻¹⁰², times 64 for the number of operations and the factor 4.
         const ROUNDING: f64 = 1.0 / (1_u128 << 96) as f64;
         let p = spread(diagonal(p).map(f64::abs));
         let mut terms = congruence(&p, &self.a);
@@ -286,9 +295,10 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
         let is_cost = parts.all(|(missing, terms)| missing.abs() <= TOLERANCE * terms);
         match Self::lyapunov(closed, &spread(terms)) {
             Some(l) if is_cost => {
-                let inputs = self.inputs.iter().map(|(b, _)| inner(b, &apply(&l, b)));
-                let squared = largest(&diagonal(&l)) * inputs.sum::<f64>();
-                (N * N) as f64 * ROUNDING * Real::sqrt(squared)
+                let columns = columns.map(|b| inner(&b, &apply(&l, &b)));
+                let squared = largest(&diagonal(&l)) * largest(&columns);
+                // s² is a sum over the inputs.
+                N as f64 * ROUNDING * Real::sqrt(squared)
             }
             _ => f64::INFINITY,
         }
