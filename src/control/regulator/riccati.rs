@@ -11,6 +11,8 @@
 //! deviations vanish in ẋ = C x as in x′ = (1 − C)⁻¹ (1 + C) x. Its unit of time is that of the
 //! problem.
 
+use core::ops::{Add, Mul};
+
 use super::double::{Double, MINUS_ONE, ONE, narrow, widen};
 use crate::error::Error;
 use crate::math::Real;
@@ -40,7 +42,7 @@ pub(super) type Gain<const N: usize = 1> = [[f64; 4]; N];
 
 impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
     /// K and P.
-    pub(super) fn solve(self) -> Result<(Gain<N>, Matrix), Error> {
+    pub(super) fn solve(&self) -> Result<(Gain<N>, Matrix), Error> {
         let (problem, units, cost_unit) = self.scaled()?;
         let (mut gain, cost) = problem.solve_scaled()?;
         for (k, unit) in gain.iter_mut().zip(units) {
@@ -76,8 +78,11 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
     pub(super) fn solve_scaled(&self) -> Result<(Gain<N>, Matrix<Double>), Error> {
         // Other weights give a gain that stabilizes even if Q does not weight a motion that grows.
         self.solve_from(self).or_else(|_| {
-            let inputs = self.inputs.map(|(b, _)| (b, inner(&b, &b)));
-            self.solve_from(&Self { a: self.a, inputs, q: identity() })
+            let mut other = Self { q: identity(), ..*self };
+            for (b, r) in &mut other.inputs {
+                *r = inner(b, b);
+            }
+            self.solve_from(&other)
         })
     }
 
@@ -143,30 +148,24 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
     #[inline(never)]
     pub(super) fn gain(&self, p: &Matrix<Double>) -> (Gain<N>, Gain<N>, f64) {
         let a = transpose(&widen(&self.a));
+        let mut columns = self.inputs.map(|(b, _)| b);
         let mut rows = self.inputs.map(|(b, r)| {
             let b = b.map(Double::from);
             let (p_b, r) = (apply(p, &b), Double::from(r));
             match STEPS {
-                true => (apply(&a, &p_b), b, r + inner(&b, &p_b), p_b),
-                false => (p_b, b, r, p_b),
+                true => (apply(&a, &p_b), r + inner(&b, &p_b), p_b),
+                false => (p_b, r, p_b),
             }
         });
-        if let [(x, b, v, p_b), (y, c, w, _)] = rows.as_mut_slice() {
-            // Cramer's rule.
-            let shared = inner(c, p_b) * MINUS_ONE;
-            for (one, other) in [(x, y), (b, c)] {
-                let before = *one;
-                *one = one.map(|x| *w * x);
-                add_scaled(one, shared, other);
-                *other = other.map(|x| *v * x);
-                add_scaled(other, shared, &before);
-            }
+        if let ([(x, v, p_b), (y, w, _)], [b, c]) = (&mut rows[..], &mut columns[..]) {
+            let shared = inner(&c.map(Double::from), p_b) * MINUS_ONE;
+            eliminate_each_other(x, y, [*v, *w, shared]);
+            eliminate_each_other(b, c, [*v, *w, shared].map(f64::from));
             *v = *v * *w + shared * shared * MINUS_ONE;
             *w = *v;
         }
-        let divisor = rows.iter().fold(1.0, |_, (.., divisor, _)| f64::from(*divisor)); // of all
-        let gain = rows.map(|(x, ..)| x.map(|x| f64::from(x) / divisor));
-        (gain, rows.map(|(_, b, ..)| b.map(f64::from)), divisor)
+        let divisor = rows.iter().fold(1.0, |_, (_, divisor, _)| f64::from(*divisor)); // of all
+        (rows.map(|(row, ..)| row.map(|x| f64::from(x) / divisor)), columns, divisor)
     }
 
     /// Newton's method, from a gain that stabilizes. It alternates between the cost of a gain and
@@ -302,6 +301,17 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
             }
             _ => f64::INFINITY,
         }
+    }
+}
+
+/// Cramer's rule for two rows, times the determinant: `v` and `w` are their weights, and `shared` is
+/// the element between them times −1.
+fn eliminate_each_other<T>(x: &mut [T; 4], y: &mut [T; 4], [v, w, shared]: [T; 3])
+where
+    T: Copy + Add<Output = T> + Mul<Output = T>,
+{
+    for (x, y) in x.iter_mut().zip(y) {
+        (*x, *y) = (w * *x + shared * *y, v * *y + shared * *x);
     }
 }
 
