@@ -72,14 +72,16 @@ fn drakes_gain_is_found() {
 #[test]
 fn gains_of_special_models_are_exact() {
     let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
-    let mut integrators = diagonal([0.0, -1.0, 0.0, -1.0]);
-    integrators[0][2] = 1.0;
+    // Four integrators become a Butterworth filter.
+    let mut integrators = none;
+    (integrators[0][2], integrators[2][1], integrators[1][3]) = (1.0, 1.0, 1.0);
+    let (outer, inner) = (2.613_125_929_752_753, 2.0 + 2_f64.sqrt());
     for (a, b, q, expected) in [
         (
             integrators,
-            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
             diagonal([1.0, 0.0, 0.0, 0.0]),
-            [1.0, 0.0, 2_f64.sqrt(), 0.0],
+            [1.0, inner, outer, outer],
         ),
         // Without weights the cheapest gain mirrors 1.1 in the imaginary axis.
         (diagonal([1.1, -0.5, -0.4, -0.3]), all, none, [2.2, 0.0, 0.0, 0.0]),

@@ -62,30 +62,30 @@ pub fn dlqe<S: Real>(model: &StepModel<S>, w: &[[S; 4]; 4], s: [S; 2]) -> Result
     let a = model.a.map(|row| row.map(S::to_f64));
     check_finite("a", a.as_flattened())?;
     let q = check_weights("w", w)?;
-    let [s1, s2] = s.map(S::to_f64);
-    for s in [s1, s2] {
+    let s = s.map(S::to_f64);
+    for s in s {
         Range::AboveZero.check("s", s, "rad²")?;
     }
     let [angle1, angle2, ..] = identity();
-    let inputs = [(angle1, s1), (angle2, s2)];
-    let (dual, _, unit) = Problem::<true, 2> { a: transpose(&a), inputs, q }.scaled()?;
-    let (_, covariance) = dual.solve_scaled().map_err(|error| match error {
+    let inputs = |unit| [(angle1, s[0] / unit), (angle2, s[1] / unit)];
+    let dual = Problem::<true, 2> { a: transpose(&a), inputs: inputs(1.0), q };
+    let (_, covariance, unit) = dual.solve().map_err(|error| match error {
         Error::NotStabilizable => Error::NotObservable,
         Error::NotDetectable => Error::NotExcited,
         error => error,
     })?;
     // Without A, which predicts.
-    let ([row1, row2], ..) = Problem { a: identity(), ..dual }.gain(&covariance);
+    let filter = Problem::<true, 2> { a: identity(), inputs: inputs(unit), q };
+    let rows = filter.gain(&covariance).0.map(|row| row.map(S::from_f64));
     let mut covariance = narrow(&covariance);
     scale(&mut covariance, unit);
 
-    let [row1, row2] = [row1, row2].map(|row| row.map(S::from_f64));
-    let zeros = [S::ZERO; 4];
-    let gain = transpose(&[row1, row2, zeros, zeros]).map(|[x, y, ..]| [x, y]);
+    let [row1, row2] = rows;
+    let gain = transpose(&[row1, row2, row1, row2]).map(|[x, y, ..]| [x, y]);
     let prior_covariance = covariance.map(|row| row.map(S::from_f64));
     check_finite("gain", gain.as_flattened())?;
     check_finite("prior_covariance", prior_covariance.as_flattened())?;
-    match dual.is_stable(&[row1, row2].map(|row| apply(&a, &row.map(S::to_f64)))) {
+    match dual.is_stable(&rows.map(|row| apply(&a, &row.map(S::to_f64)))) {
         true => Ok(Lqe { gain, prior_covariance }),
         false => Err(Error::IllConditioned { error: S::EPSILON.to_f64() }),
     }

@@ -1,5 +1,6 @@
 //! The linear-quadratic regulator of a model of one step.
 
+use super::double::narrow;
 use super::riccati::Problem;
 use crate::control::model::StepModel;
 use crate::error::{Error, Range};
@@ -73,7 +74,9 @@ impl<S: Real> Lqr<S> {
 /// `NotSemidefinite`, `NotStabilizable`, `NotDetectable` and `IllConditioned`.
 pub fn dlqr<S: Real>(model: &StepModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, Error> {
     let problem: Problem<true> = problem(&model.a, &model.b, q, r)?;
-    let ([gain], cost_to_go) = problem.solve()?;
+    let ([gain], cost_to_go, unit) = problem.solve()?;
+    let mut cost_to_go = narrow(&cost_to_go);
+    scale(&mut cost_to_go, unit);
     rounded(&gain, &cost_to_go, |gain| problem.is_stable(&[*gain]))
 }
 

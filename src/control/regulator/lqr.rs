@@ -1,6 +1,7 @@
 //! The linear-quadratic regulator in continuous time.
 
 use super::dlqr::{Lqr, problem, rounded};
+use super::double::narrow;
 use super::riccati::Problem;
 use crate::control::model::LinearModel;
 use crate::error::Error;
@@ -50,9 +51,9 @@ pub fn lqr<S: Real>(model: &LinearModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr
     problem.inputs = problem.inputs.map(|(b, r)| (apply(&to, &b).map(|x| x * time), r));
     problem.q = congruence(&problem.q, &from);
 
-    let ([gain], cost) = problem.solve()?;
-    let mut cost_to_go = congruence(&cost, &to);
-    scale(&mut cost_to_go, time);
+    let ([gain], cost, unit) = problem.solve()?;
+    let mut cost_to_go = congruence(&narrow(&cost), &to);
+    scale(&mut cost_to_go, unit * time);
     rounded(&apply(&to, &gain), &cost_to_go, |gain| problem.is_stable(&[apply(&from, gain)]))
 }
 

@@ -11,8 +11,6 @@
 //! deviations vanish in ẋ = C x as in x′ = (1 − C)⁻¹ (1 + C) x. Its unit of time is that of the
 //! problem.
 
-use core::ops::{Add, Mul};
-
 use super::double::{Double, MINUS_ONE, ONE, narrow, widen};
 use crate::error::Error;
 use crate::math::Real;
@@ -41,54 +39,38 @@ pub(super) struct Problem<const STEPS: bool, const N: usize = 1> {
 pub(super) type Gain<const N: usize = 1> = [[f64; 4]; N];
 
 impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
-    /// K and P.
-    pub(super) fn solve(&self) -> Result<(Gain<N>, Matrix), Error> {
-        let (problem, units, cost_unit) = self.scaled()?;
-        let (mut gain, cost) = problem.solve_scaled()?;
+    /// K, P, and the unit of this P, which has twice the digits.
+    ///
+    /// Computes in units of each input and of cost in which the largest elements of B and of the
+    /// weights are between 1 and 2, so that nothing overflows. Powers of 2 change no digit.
+    pub(super) fn solve(&self) -> Result<(Gain<N>, Matrix<Double>, f64), Error> {
+        let Self { a, mut inputs, mut q } = *self;
+        let units = inputs.map(|(b, _)| power_of_2(largest(&b)));
+        let weighted = largest(q.as_flattened());
+        let mut most = weighted;
+        for ((b, r), unit) in inputs.iter_mut().zip(units) {
+            *b = b.map(|x| x / unit);
+            *r = *r / unit / unit;
+            most = r.max(most);
+        }
+        let unit = power_of_2(most);
+        if weighted > 0.0 && weighted / unit < 1e-250 {
+            return Err(Error::IllConditioned { error: 1.0 }); // costs would underflow
+        }
+        inputs = inputs.map(|(b, r)| (b, r / unit));
+        scale(&mut q, 1.0 / unit);
+
+        let scaled = Self { a, inputs, q };
+        let begin = |other: &Self| scaled.refine(other.double().ok_or(Error::NotStabilizable)?);
+        // Other weights give a gain that stabilizes even if Q does not weight a motion that grows.
+        let (mut gain, cost) = begin(&scaled).or_else(|_| {
+            let inputs = inputs.map(|(b, _)| (b, inner(&b, &b)));
+            begin(&Self { a, inputs, q: identity() })
+        })?;
         for (k, unit) in gain.iter_mut().zip(units) {
             *k = k.map(|x| x / unit);
         }
-        let mut cost = narrow(&cost);
-        scale(&mut cost, cost_unit);
-        Ok((gain, cost))
-    }
-
-    /// The problem in units of each input and of cost in which the largest elements of B and of the
-    /// weights are between 1 and 2, so that nothing overflows, and these units. Powers of 2 change
-    /// no digit.
-    pub(super) fn scaled(mut self) -> Result<(Self, [f64; N], f64), Error> {
-        let units = self.inputs.map(|(b, _)| power_of_2(largest(&b)));
-        let most = largest(self.q.as_flattened());
-        let mut most_of_all = most;
-        for ((b, r), unit) in self.inputs.iter_mut().zip(units) {
-            *b = b.map(|x| x / unit);
-            *r = *r / unit / unit;
-            most_of_all = r.max(most_of_all);
-        }
-        let cost_unit = power_of_2(most_of_all);
-        if most > 0.0 && most / cost_unit < 1e-250 {
-            return Err(Error::IllConditioned { error: 1.0 }); // costs would underflow
-        }
-        self.inputs = self.inputs.map(|(b, r)| (b, r / cost_unit));
-        scale(&mut self.q, 1.0 / cost_unit);
-        Ok((self, units, cost_unit))
-    }
-
-    /// K and P of a [scaled](Self::scaled) problem.
-    pub(super) fn solve_scaled(&self) -> Result<(Gain<N>, Matrix<Double>), Error> {
-        // Other weights give a gain that stabilizes even if Q does not weight a motion that grows.
-        self.solve_from(self).or_else(|_| {
-            let mut other = Self { q: identity(), ..*self };
-            for (b, r) in &mut other.inputs {
-                *r = inner(b, b);
-            }
-            self.solve_from(&other)
-        })
-    }
-
-    /// The solution, beginning with that of a problem with other weights.
-    fn solve_from(&self, other: &Self) -> Result<(Gain<N>, Matrix<Double>), Error> {
-        self.refine(other.double().ok_or(Error::NotStabilizable)?)
+        Ok((gain, cost, unit))
     }
 
     /// K and P up to rounding, which can be large.
@@ -143,29 +125,31 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
         Some([a, g, p])
     }
 
-    /// The best gain before a cost P, and the columns and the divisor of B (R + Bᵀ P B)⁻¹, or of
-    /// B R⁻¹ in continuous time.
+    /// The best gain before a cost P, and the columns and the divisor of B (R + Bᵀ P B)⁻¹, in
+    /// continuous time of B R⁻¹.
     #[inline(never)]
     pub(super) fn gain(&self, p: &Matrix<Double>) -> (Gain<N>, Gain<N>, f64) {
         let a = transpose(&widen(&self.a));
-        let mut columns = self.inputs.map(|(b, _)| b);
         let mut rows = self.inputs.map(|(b, r)| {
             let b = b.map(Double::from);
             let (p_b, r) = (apply(p, &b), Double::from(r));
             match STEPS {
-                true => (apply(&a, &p_b), r + inner(&b, &p_b), p_b),
-                false => (p_b, r, p_b),
+                true => (apply(&a, &p_b), b, r + inner(&b, &p_b), p_b),
+                false => (p_b, b, r, p_b),
             }
         });
-        if let ([(x, v, p_b), (y, w, _)], [b, c]) = (&mut rows[..], &mut columns[..]) {
-            let shared = inner(&c.map(Double::from), p_b) * MINUS_ONE;
-            eliminate_each_other(x, y, [*v, *w, shared]);
-            eliminate_each_other(b, c, [*v, *w, shared].map(f64::from));
+        if let [(x, b, v, p_b), (y, c, w, _)] = &mut rows[..] {
+            // Cramer's rule.
+            let shared = inner(c, p_b) * MINUS_ONE;
+            for (x, y) in x.iter_mut().zip(y).chain(b.iter_mut().zip(c)) {
+                (*x, *y) = (*w * *x + shared * *y, *v * *y + shared * *x);
+            }
             *v = *v * *w + shared * shared * MINUS_ONE;
             *w = *v;
         }
-        let divisor = rows.iter().fold(1.0, |_, (_, divisor, _)| f64::from(*divisor)); // of all
-        (rows.map(|(row, ..)| row.map(|x| f64::from(x) / divisor)), columns, divisor)
+        let divisor = rows.iter().fold(1.0, |_, (.., divisor, _)| f64::from(*divisor)); // of all
+        let gain = rows.map(|(x, ..)| x.map(|x| f64::from(x) / divisor));
+        (gain, rows.map(|(_, b, ..)| b.map(f64::from)), divisor)
     }
 
     /// Newton's method, from a gain that stabilizes. It alternates between the cost of a gain and
@@ -190,18 +174,17 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
             for (row, missing) in cost.iter_mut().zip(&widen(&missing)) {
                 add_scaled(row, ONE, missing);
             }
-            let (better, columns, divisor) = self.gain(&cost);
-            for (k, better) in gain.iter_mut().zip(&better) {
+            let better = self.gain(&cost);
+            for (k, better) in gain.iter_mut().zip(&better.0) {
                 add_scaled(k, -1.0, better);
             }
             (before, change) = (change, largest(gain.as_flattened()));
-            gain = better;
+            gain = better.0;
 
             let size = largest(gain.as_flattened());
             error = change / size;
             if change <= 16.0 * f64::EPSILON * size {
-                let rounding = self.rounding(&gain, &narrow(&cost), &missing, &closed, &columns);
-                let rounding = rounding / divisor;
+                let rounding = self.rounding(&better, &narrow(&cost), &missing, &closed);
                 error = rounding / size;
                 if error <= TOLERANCE || size == 0.0 && rounding.is_finite() {
                     return Ok((gain, cost));
@@ -265,8 +248,7 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
         lyapunov(&power, &stage)
     }
 
-    /// A bound of the error that rounding leaves in a gain, times the divisor of the columns;
-    /// infinite if the cost still changes.
+    /// A bound of the error that rounding leaves in a gain; infinite if the cost still changes.
     ///
     /// The rounding N of the residual has |N_ij| ≤ s_i s_j, because |P_ij|² ≤ P_ii P_jj. So N is
     /// between −4 diag(s²) and 4 diag(s²), and the error E of P between −L and L, if L is the cost
@@ -274,11 +256,10 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
     #[inline(never)]
     fn rounding(
         &self,
-        gain: &Gain<N>,
+        (gain, columns, divisor): &(Gain<N>, Gain<N>, f64),
         p: &Matrix,
         missing: &Matrix,
         closed: &Matrix,
-        columns: &Gain<N>,
     ) -> f64 {
         /// 2⁻¹⁰², times 64 for the number of operations and the factor 4.
         const ROUNDING: f64 = 1.0 / (1_u128 << 96) as f64;
@@ -294,24 +275,12 @@ impl<const STEPS: bool, const N: usize> Problem<STEPS, N> {
         let is_cost = parts.all(|(missing, terms)| missing.abs() <= TOLERANCE * terms);
         match Self::lyapunov(closed, &spread(terms)) {
             Some(l) if is_cost => {
-                let columns = columns.map(|b| inner(&b, &apply(&l, &b)));
-                let squared = largest(&diagonal(&l)) * largest(&columns);
+                let squared = columns.map(|b| inner(&b, &apply(&l, &b)) * largest(&diagonal(&l)));
                 // s² is a sum over the inputs.
-                N as f64 * ROUNDING * Real::sqrt(squared)
+                N as f64 * ROUNDING * Real::sqrt(largest(&squared)) / divisor
             }
             _ => f64::INFINITY,
         }
-    }
-}
-
-/// Cramer's rule for two rows, times the determinant: `v` and `w` are their weights, and `shared` is
-/// the element between them times −1.
-fn eliminate_each_other<T>(x: &mut [T; 4], y: &mut [T; 4], [v, w, shared]: [T; 3])
-where
-    T: Copy + Add<Output = T> + Mul<Output = T>,
-{
-    for (x, y) in x.iter_mut().zip(y) {
-        (*x, *y) = (w * *x + shared * *y, v * *y + shared * *x);
     }
 }
 
