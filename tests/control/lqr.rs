@@ -104,8 +104,7 @@ fn upright() -> LinearModel {
     Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap().linearize(0.0).unwrap()
 }
 
-/// In another unit of time, t' = t / τ, velocities and rates are τ times as large, and accelerations
-/// τ² times.
+/// In another unit of time velocities and rates are τ times as large, and accelerations τ² times.
 #[test]
 fn no_unit_changes_a_digit() {
     let LinearModel { a, b } = upright();
