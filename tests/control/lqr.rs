@@ -68,6 +68,39 @@ fn drakes_gain_is_found() {
     assert!(relative(&from_cost, &gain) < 1e-12, "{from_cost:?}");
 }
 
+/// For the recorded acrobots, in motion, too: a positive definite P that solves the equation is that
+/// of the regulator.
+#[test]
+fn costs_solve_the_equation() {
+    let text = text_of("tests/data/control.txt");
+    let q = [10.0, 10.0, 1.0, 1.0];
+    assert_eq!(lines(&text, "continuous").count(), 120);
+    for x in lines(&text, "continuous").map(numbers) {
+        let (a, b) = (matrix(&x[..16]), vector(&x[16..]));
+        let Lqr { gain, cost_to_go: p } = lqr(&LinearModel { a, b }, &diagonal(q), 1.0).unwrap();
+        for i in 0..4 {
+            for j in 0..=i {
+                let terms = (0..4).flat_map(|k| [a[k][i] * p[k][j], p[i][k] * a[k][j]]);
+                let others = [if i == j { q[i] } else { 0.0 }, -gain[i] * gain[j]];
+                let terms = terms.chain(others);
+                let (sum, most) =
+                    terms.fold((0.0, 0.0_f64), |(sum, most), x| (sum + x, most + x.abs()));
+                assert!(sum.abs() <= 1e-13 * most, "{sum:e} {most:e} {x:?}");
+            }
+        }
+        // The pivots of an elimination.
+        let mut rest = p;
+        for i in 0..4 {
+            let row = rest[i];
+            assert!(row[i] > 0.0, "{x:?}");
+            for other in &mut rest[i + 1..] {
+                let factor = other[i] / row[i];
+                *other = std::array::from_fn(|j| other[j] - factor * row[j]);
+            }
+        }
+    }
+}
+
 /// By hand.
 #[test]
 fn gains_of_special_models_are_exact() {
