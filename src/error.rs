@@ -83,7 +83,8 @@ pub enum Error {
     },
     /// The torque does not reach a motion that grows or persists, so no regulator makes it vanish.
     NotStabilizable,
-    /// The weights do not see a motion that persists: one that needs more than 2⁴⁰ steps to vanish.
+    /// The weights do not see a motion that persists: one that needs more than 2⁴⁰ steps to vanish,
+    /// or in continuous time about 2⁴⁰ times as long as the fastest.
     NotDetectable,
     /// The measured angles do not show a motion that grows or persists, so no filter follows it.
     NotObservable,
