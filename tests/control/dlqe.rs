@@ -71,6 +71,15 @@ fn the_unit_of_the_noise_changes_no_digit() {
     }
 }
 
+/// The second encoder measures an angle without noise, so its own noise must not matter.
+#[test]
+fn a_precise_encoder_spoils_no_gain() {
+    let model = StepModel { a: diagonal([1.2, 0.5, 0.5, 0.5]), b: [0.0; 4] };
+    let w = diagonal([1.0, 0.0, 0.0, 0.0]);
+    let gain = |s2: f64| dlqe(&model, &w, [1.0, s2]).unwrap().gain;
+    assert_eq!(gain(2.0_f64.powi(-100)), gain(1.0));
+}
+
 #[test]
 fn a_filter_that_cannot_exist_is_an_error() {
     let model = |a| StepModel { a: diagonal(a), b: [0.0; 4] };
