@@ -83,8 +83,13 @@ pub enum Error {
     },
     /// The torque does not reach a motion that grows or persists, so no regulator makes it vanish.
     NotStabilizable,
-    /// The weights do not see a motion that persists: one that needs more than 2⁴⁰ steps to vanish.
+    /// The weights do not see a motion that persists: one that needs more than 2⁴⁰ steps to vanish,
+    /// or in continuous time about 2⁴⁰ times as long as the fastest.
     NotDetectable,
+    /// The measured angles do not show a motion that grows or persists, so no filter follows it.
+    NotObservable,
+    /// The noise of a filter's model does not excite a motion that persists.
+    NotExcited,
     /// The error of a gain can be above 1e-9 of its largest element, or deviations do not vanish
     /// with the gain that the scalar rounds.
     IllConditioned {
@@ -150,6 +155,11 @@ impl Error {
             Self::NotDetectable => {
                 "q must weight each motion that persists, but does not weight one"
             }
+            Self::NotObservable => {
+                "the measured angles must show each motion that grows or persists, but do not show \
+                one"
+            }
+            Self::NotExcited => "w must excite each motion that persists, but does not excite one",
             Self::IllConditioned { .. } => "the relative error of the gain must be at most 1e-9",
             Self::NoPlan { .. } => "no plan ends upright",
             #[cfg(feature = "std")]
@@ -171,9 +181,11 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
             Error::WrongLength { len, expected, .. } => {
                 write!(f, "{name} must have {expected} elements, got {len}")
             }
-            Error::SharedParams | Error::NotStabilizable | Error::NotDetectable => {
-                f.write_str(error.message())
-            }
+            Error::SharedParams
+            | Error::NotStabilizable
+            | Error::NotDetectable
+            | Error::NotObservable
+            | Error::NotExcited => f.write_str(error.message()),
             Error::EmptyBatch => write!(f, "{}, got 0 generators", error.message()),
             #[cfg(feature = "alloc")]
             Error::OutOfMemory { of, len } => {

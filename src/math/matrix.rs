@@ -146,10 +146,17 @@ pub fn largest(elements: &[f64]) -> f64 {
     elements.iter().fold(0.0, |most, x| x.abs().max(most))
 }
 
-/// Gauss-Jordan elimination with partial pivoting of rows of w, x and y: x and y become w⁻¹ x and
-/// w⁻¹ y, which are not finite if w is singular.
+/// w⁻¹ x and w⁻¹ y, which are not finite if w is singular.
 #[inline(never)]
-pub fn eliminate(rows: &mut [[[f64; 4]; 3]; 4]) -> Option<()> {
+pub fn divide(w: &Matrix, x: &Matrix, y: &Matrix) -> Option<[Matrix; 2]> {
+    let mut rows = [[w[0], x[0], y[0]], [w[1], x[1], y[1]], [w[2], x[2], y[2]], [w[3], x[3], y[3]]];
+    eliminate(&mut rows)?;
+    Some([rows.map(|[_, x, _]| x), rows.map(|[_, _, y]| y)])
+}
+
+/// Gauss-Jordan elimination with partial pivoting of rows of w, x and y.
+#[inline(never)]
+fn eliminate(rows: &mut [[[f64; 4]; 3]; 4]) -> Option<()> {
     for column in 0..4 {
         let (above, rest) = rows.split_at_mut_checked(column)?;
         let (pivot, below) = rest.split_first_mut()?;

@@ -2,13 +2,16 @@
 //! digits, recorded by `tests/data/control.py`.
 
 mod balance;
+mod dlqe;
 mod estimator;
 mod identify;
+mod lqr;
 mod motions;
 mod mpc;
 mod planner;
 mod recovery;
 mod regulators;
+mod tvlqr;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::control::model::Forces;

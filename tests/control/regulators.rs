@@ -12,7 +12,7 @@ use common::{lines, numbers, text_of};
 
 use crate::{cast, relative, vector};
 
-fn matrix(elements: &[f64]) -> [[f64; 4]; 4] {
+pub fn matrix(elements: &[f64]) -> [[f64; 4]; 4] {
     elements.as_chunks().0.try_into().unwrap()
 }
 
@@ -20,7 +20,7 @@ pub fn diagonal(x: [f64; 4]) -> [[f64; 4]; 4] {
     from_fn(|i| from_fn(|j| if i == j { x[i] } else { 0.0 }))
 }
 
-const IDENTITY: [[f64; 4]; 4] =
+pub const IDENTITY: [[f64; 4]; 4] =
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
 /// The regulator of A, B, Q and R, as a line of the recording has them.
@@ -148,7 +148,7 @@ fn a_gain_that_rounding_spoils_is_an_error() {
     assert_eq!(found(growing(3.0), 1e-251), 1.0);
 }
 
-fn upright() -> StepModel {
+pub fn upright() -> StepModel {
     Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap().linearize_step(0.0).unwrap()
 }
 

@@ -4,10 +4,12 @@ control.txt to its folder.
 The equations are those of truth.py, also in a Runge-Kutta step. The torques are Lagrange's
 equations from positions and energies alone, and the forces Newton's law from the second derivatives
 of positions in time. SciPy's solve_discrete_are finds the same solutions of the Riccati equation,
-with an error of up to 3e-6.
+with an error of up to 3e-6. The Riccati equation in continuous time is solved by eigenvectors.
+SciPy's solve_continuous_are and python-control's dlqe find the same for most models.
 """
 
 import os
+import sys
 from importlib.metadata import version
 from pathlib import Path
 
@@ -17,9 +19,12 @@ os.environ["OPENBLAS_CORETYPE"] = "Haswell"
 if "avx512f" in Path("/proc/cpuinfo").read_text():
     os.environ["NPY_DISABLE_CPU_FEATURES"] = "X86_V4 AVX512_ICL AVX512_SPR"
 
+sys.path.pop(0)  # this file is not the package of its name
+
+import control
 import mpmath
 import numpy as np
-from scipy.linalg import solve_discrete_are
+from scipy.linalg import LinAlgError, solve_continuous_are, solve_discrete_are
 
 NAMES = "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2"
 NAMES += " gravity dt damping1 damping2 coulomb1 coulomb2 rotor"
@@ -127,21 +132,54 @@ def motion(p, y, accelerations, dynamics):
 
 def regulator(a, b, q, r):
     """The solution of the Riccati equation: structured doubling, checked."""
-    a, b, q = (mpmath.matrix(m.tolist()) for m in (a, b[:, None], q))
-    r = mpmath.mpf(float(r))
-    power, reach, cost = a, b * b.T / r, q
+    gain, cost = solution(a, b[:, None], q, np.array([[float(r)]]))
+    return np.array(gain.tolist(), float)[0], np.array(cost.tolist(), float)
+
+
+def solution(*model):
+    a, b, q, r = (mpmath.matrix(m.tolist()) for m in model)
+    power, reach, cost = a, b * r**-1 * b.T, q
     while mpmath.mnorm(power) > 1e-50:
         w = (mpmath.eye(4) + reach * cost) ** -1
         cost, reach = cost + power.T * cost * w * power, reach + power * w * reach * power.T
         power = power * w * power
-    gain = b.T * cost * a / (r + (b.T * cost * b)[0])
+    gain = (r + b.T * cost * b) ** -1 * b.T * cost * a
     closed = a - b * gain
-    residual = closed.T * cost * closed + q + r * gain.T * gain - cost
+    residual = closed.T * cost * closed + q + gain.T * r * gain - cost
     assert mpmath.mnorm(residual) < 1e-90 * mpmath.mnorm(cost)
     for _ in range(40):
         closed = closed * closed
     assert mpmath.mnorm(closed) < 1e-9
+    return gain, cost
+
+
+def continuous_regulator(a, b, q, r):
+    """The gain and the cost in continuous time, by the eigenvectors of the Hamiltonian, checked."""
+    a, b, q = (mpmath.matrix(m.tolist()) for m in (a, b[:, None], q))
+    r = mpmath.mpf(float(r))
+    hamiltonian = mpmath.zeros(8)
+    hamiltonian[:4, :4], hamiltonian[:4, 4:] = a, -b * b.T / r
+    hamiltonian[4:, :4], hamiltonian[4:, 4:] = -q, -a.T
+    values, vectors = mpmath.eig(hamiltonian)
+    stable = [i for i in range(8) if values[i].real < 0]
+    assert len(stable) == 4
+    upper, lower = (mpmath.matrix(4), mpmath.matrix(4))
+    for column, i in enumerate(stable):
+        upper[:, column], lower[:, column] = vectors[:4, i], vectors[4:, i]
+    cost = (lower * upper**-1).apply(mpmath.re)
+    gain = b.T * cost / r
+    residual = a.T * cost + cost * a + q - r * gain.T * gain
+    assert mpmath.mnorm(residual) < 1e-90 * mpmath.mnorm(cost)
     return np.array(gain.tolist(), float)[0], np.array(cost.tolist(), float)
+
+
+def filter_gain(a, w, s):
+    """The gain and the covariance before the measurement: the dual of the regulator."""
+    measured = np.eye(4)[:, :2]
+    _, p = solution(a.T, measured, w, np.diag(s))
+    c = mpmath.matrix(measured.T.tolist())
+    gain = p * c.T * (c * p * c.T + mpmath.diag(s.tolist())) ** -1
+    return np.array(gain.tolist(), float), np.array(p.tolist(), float)
 
 
 def texts(*arrays):
@@ -200,6 +238,49 @@ def wide_models(rng):
         yield "wide", a, b, np.diag(decades(rng, -spread, spread, 4)), decades(rng, -spread, spread)
 
 
+def rates(rng):
+    """Models in continuous time with weights."""
+    for angle in 0.0, np.pi:
+        p = np.array([*DEFAULT[:9], 0.2, *NONE]) * mpmath.mpf(1)
+        a, b = linear(derivative, p, np.array([angle, 0.0, 0.0, 0.0]), 0, "book")
+        for diagonal in [1.0] * 4, (1000.0, 1000.0, 10.0, 10.0), (1.0, 1.0, 0.0, 0.0):
+            for r in 1e-8, 1e-4, 1.0, 1e6, 1e8:
+                yield "acrobot", a.astype(float), b.astype(float), np.diag(diagonal), r
+    for number in range(170):
+        spread = number % 4
+        units = decades(rng, -spread, spread, 4)
+        rate = decades(rng, -6, 6)
+        a = rng.normal(size=(4, 4)) * units[:, None] / units * rate
+        b = rng.normal(size=4) * decades(rng, -spread, spread, 4) * rate
+        root = np.float32(rng.normal(size=(4, 4)) * decades(rng, -spread, spread, 4))
+        q = root.T @ root if rng.random() < 0.5 else np.diag(decades(rng, -6, 6, 4))
+        yield "any", a, b, (q + q.T) / 2, decades(rng, -12, 8)
+
+
+def noisy(rng):
+    """Models of steps with the covariance of the noise and the variances of both angles."""
+    for dt in 0.002, 0.01, 0.05:
+        for angle in 0.0, np.pi:
+            a, _ = resting(dt, angle)
+            for noise in 1e-9, 1e-5, 1e-1:
+                for variances in (1e-8, 1e-8), (1e-4, 1e-10):
+                    yield "acrobot", a, np.diag([0.0, 0.0, noise, 2 * noise]), np.array(variances)
+    for number in range(164):
+        spread = number % 4
+        units = decades(rng, -spread, spread, 4)
+        a = rng.normal(size=(4, 4)) * decades(rng, -1, 1)
+        if rng.random() < 0.5:
+            a = np.eye(4) + a * decades(rng, -3, 0)
+        a = a * units[:, None] / units
+        root = np.float32(rng.normal(size=(4, 4)) * decades(rng, -spread, spread, 4))
+        w = root.T @ root if rng.random() < 0.5 else np.diag(decades(rng, -6, 6, 4))
+        yield "any", a, (w + w.T) / 2, decades(rng, -10, 4, 2)
+
+
+def distance(found, expected):
+    return np.abs(found - expected).max() / np.abs(expected).max()
+
+
 def usual(rng):
     """A state, a torque and accelerations."""
     return rng.uniform(-STATES, STATES), rng.uniform(-5, 5), rng.uniform(-20, 20, 2)
@@ -256,6 +337,33 @@ def main():
         "# the second 40 cases: parameters over six decades; the last 40: with friction",
         "# model KIND: A, B, Q by rows and R, all f32, and the gain",
     ]
+    errors = []
+    lines.append("# care KIND: A, B, Q by rows and R of continuous time, all f32, and the gain")
+    for kind, *model in rates(np.random.default_rng(7)):
+        given = [np.float32(x) for x in model]
+        a, b, q, r = (x.astype(float) for x in given)
+        gain, cost = continuous_regulator(a, b, q, r)
+        try:
+            errors.append(distance(solve_continuous_are(a, b[:, None], q, r[None, None]), cost))
+        except LinAlgError:
+            errors.append(1.0)
+        numbers = " ".join(str(x) for array in given for x in np.ravel(array))
+        lines.append(f"care {kind} {numbers} {texts(gain)}")
+    assert np.quantile(errors, 0.8) < 1e-6
+    errors = []
+    lines.append(
+        "# dlqe KIND: A, W by rows and the variances of both angles, all f32, the gain, and the"
+        " covariance before the measurement, by rows"
+    )
+    for kind, *model in noisy(np.random.default_rng(8)):
+        given = [np.float32(x) for x in model]
+        a, w, s = (x.astype(float) for x in given)
+        gain, covariance = filter_gain(a, w, s)
+        found, *_ = control.dlqe(a, np.eye(4), np.eye(4)[:2], w, np.diag(s), method="scipy")
+        errors.append(distance(found, a @ gain))  # python-control's gain also predicts the step
+        numbers = " ".join(str(x) for array in given for x in np.ravel(array))
+        lines.append(f"dlqe {kind} {numbers} {texts(gain, covariance)}")
+    assert max(errors) < 1e-6
     (Path(__file__).parent / "control.txt").write_text("\n".join(head + lines) + "\n")
 
 

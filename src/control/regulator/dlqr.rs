@@ -1,5 +1,6 @@
 //! The linear-quadratic regulator of a model of one step.
 
+use super::double::narrow;
 use super::riccati::Problem;
 use crate::control::model::StepModel;
 use crate::error::{Error, Range};
@@ -7,13 +8,13 @@ use crate::math::Real;
 use crate::math::matrix::{Matrix, add, add_scaled, check_finite, dot, largest, scale, transpose};
 
 /// A linear-quadratic regulator: of all state feedbacks that make every deviation vanish, the one
-/// with the least sum of xᵀ Q x + R u² over all steps.
+/// with the least sum of xᵀ Q x + R u² over all steps, or the least integral over all time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Lqr<S = f64> {
     /// K in u = −K x, N m per rad and per rad/s.
     pub gain: [S; 4],
-    /// P, symmetric: xᵀ P x is the cost of all steps from x on.
+    /// P, symmetric: xᵀ P x is the sum or the integral from x on.
     pub cost_to_go: [[S; 4]; 4],
 }
 
@@ -49,9 +50,21 @@ impl<S: Real> Lqr<S> {
 ///
 /// let params = Params { dt: 0.02, ..Params::DEFAULT };
 /// let upright = Pendulum::<Portable>::new(params, State::UPRIGHT)?;
-/// let identity = core::array::from_fn(|i| core::array::from_fn(|j| f64::from(i == j)));
-/// let lqr = dlqr(&upright.linearize_step(0.0)?, &identity, 1.0)?;
+/// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]]; // θ1 alone
+/// let lqr = dlqr(&upright.linearize_step(0.0)?, &q, 1.0)?;
 /// assert!(lqr.torque([0.01, 0.0, 0.0, 0.0]) > 0.0); // against a lean
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// A model in continuous time does not compile:
+///
+/// ```compile_fail,E0308
+/// # use acrobot::control::regulator::dlqr;
+/// # use acrobot::physics::Pendulum;
+/// # use acrobot::{Params, Portable, State};
+/// # let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
+/// # let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
+/// let lqr = dlqr(&upright.linearize(0.0)?, &q, 1.0)?;
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 ///
@@ -60,24 +73,43 @@ impl<S: Real> Lqr<S> {
 /// [`Error::OutOfRange`] for an `r` that is not above 0; `NotFinite`, `NotSymmetric`,
 /// `NotSemidefinite`, `NotStabilizable`, `NotDetectable` and `IllConditioned`.
 pub fn dlqr<S: Real>(model: &StepModel<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, Error> {
-    let [a, mut q] = [&model.a, q].map(|m| m.map(|row| row.map(S::to_f64)));
-    let (b, r) = (model.b.map(S::to_f64), r.to_f64());
+    let problem: Problem<true> = problem(&model.a, &model.b, q, r)?;
+    let ([gain], cost_to_go, unit) = problem.solve()?;
+    let mut cost_to_go = narrow(&cost_to_go);
+    scale(&mut cost_to_go, unit);
+    rounded(&gain, &cost_to_go, |gain| problem.is_stable(&[*gain]))
+}
+
+/// A checked problem.
+pub(super) fn problem<S: Real, const STEPS: bool>(
+    a: &Matrix<S>,
+    b: &[S; 4],
+    q: &Matrix<S>,
+    r: S,
+) -> Result<Problem<STEPS>, Error> {
+    let [a, mut q] = [a, q].map(|m| m.map(|row| row.map(S::to_f64)));
+    let (b, r) = (b.map(S::to_f64), r.to_f64());
     check_finite_f64("a", a.as_flattened())?;
     check_finite_f64("b", &b)?;
     check_weights("q", &mut q, S::EPSILON.to_f64())?;
     Range::AboveZero.check("r", r, "per (N m)²")?;
+    Ok(Problem { a, inputs: [(b, r)], q })
+}
 
-    let problem = Problem { a, b, q, r };
-    let (gain, cost_to_go) = problem.solve()?;
+/// A regulator whose gain is stable as the scalar rounds it.
+pub(super) fn rounded<S: Real>(
+    gain: &[f64; 4],
+    cost_to_go: &Matrix,
+    is_stable: impl Fn(&[f64; 4]) -> bool,
+) -> Result<Lqr<S>, Error> {
     let regulator =
         Lqr { gain: gain.map(S::from_f64), cost_to_go: cost_to_go.map(|row| row.map(S::from_f64)) };
     check_finite("gain", &regulator.gain)?;
     check_finite("cost_to_go", regulator.cost_to_go.as_flattened())?;
-    if !problem.is_stable(&regulator.gain.map(S::to_f64)) {
-        let error = S::EPSILON.to_f64();
-        return Err(Error::IllConditioned { error });
+    match is_stable(&regulator.gain.map(S::to_f64)) {
+        true => Ok(regulator),
+        false => Err(Error::IllConditioned { error: S::EPSILON.to_f64() }),
     }
-    Ok(regulator)
 }
 
 /// Checks weights, and makes them symmetric to the last digit: products such as G W Gᵀ are so only

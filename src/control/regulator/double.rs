@@ -12,6 +12,7 @@ use crate::math::matrix::Matrix;
 #[derive(Clone, Copy, Debug)]
 pub struct Double(f64, f64);
 
+pub const ONE: Double = Double(1.0, 0.0);
 pub const MINUS_ONE: Double = Double(-1.0, 0.0);
 
 #[inline(never)] // saves flash

@@ -13,6 +13,19 @@ use crate::physics::plus_scaled;
 /// [`dlqr`](super::dlqr::dlqr), and `cost_to_go` is P, symmetric and positive semidefinite. Writes
 /// K of u = −K x for each step, N m per rad and per rad/s. Returns P before the first step.
 ///
+/// ```
+/// use acrobot::control::regulator::tvlqr;
+/// use acrobot::physics::Pendulum;
+/// use acrobot::{Params, Portable, State};
+///
+/// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
+/// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]]; // θ1 alone
+/// let mut gains = [[0.0; 4]; 10];
+/// tvlqr(&[upright.linearize_step(0.0)?; 10], &q, 1.0, &q, &mut gains)?;
+/// assert!(gains[0][0] < gains[9][0]); // weaker near the end
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
 /// # Errors
 ///
 /// [`Error::WrongLength`] for other than one gain for each model, [`Error::OutOfRange`] for an `r`

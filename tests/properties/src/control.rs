@@ -6,8 +6,8 @@ use acrobot::Error;
 use acrobot::arithmetic::Real;
 use acrobot::control::estimate::{Estimator, Noise, ParameterEstimator, ParameterStd};
 use acrobot::control::identify::{Regression, Sample};
-use acrobot::control::model::StepModel;
-use acrobot::control::regulator::dlqr;
+use acrobot::control::model::{LinearModel, StepModel};
+use acrobot::control::regulator::{dlqe, dlqr, lqr};
 use acrobot::physics::Pendulum;
 use common::in_every_arithmetic;
 use proptest::prelude::*;
@@ -139,16 +139,17 @@ fn regulators_stabilize_or_are_errors() {
             number::<S>(range),
         );
         holds(2000, given, |(a, b, q, r)| {
-            let model = StepModel { a, b };
-            let Ok(regulator) = dlqr(&model, &q, r) else {
-                return;
+            let check = |gain: &[S], cost: [[S; 4]; 4]| {
+                assert!(gain.iter().chain(cost.as_flattened()).all(|x| x.is_finite()));
+                assert_eq!(cost, from_fn(|i| cost.map(|row| row[i])), "not symmetric");
             };
-            let [gain, cost] = [&regulator.gain[..], regulator.cost_to_go.as_flattened()];
-            assert!(gain.iter().chain(cost).all(|x| x.is_finite()));
-            for i in 0..4 {
-                for j in 0..4 {
-                    assert_eq!(regulator.cost_to_go[i][j], regulator.cost_to_go[j][i]);
-                }
+            let model = StepModel { a, b };
+            let regulators = [dlqr(&model, &q, r), lqr(&LinearModel { a, b }, &q, r)];
+            for regulator in regulators.into_iter().flatten() {
+                check(&regulator.gain, regulator.cost_to_go);
+            }
+            if let Ok(filter) = dlqe(&model, &q, [r, b[0]]) {
+                check(filter.gain.as_flattened(), filter.prior_covariance);
             }
         });
     }

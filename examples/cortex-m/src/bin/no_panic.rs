@@ -18,7 +18,7 @@ use acrobot::batch::{
 use acrobot::control::estimate::{Estimator, Noise, ParameterEstimator, ParameterStd};
 use acrobot::control::identify::{Regression, Sample, identify, prediction_error};
 use acrobot::control::plan::{Knot, Planner, Problem, SwingUp};
-use acrobot::control::regulator::dlqr;
+use acrobot::control::regulator::{dlqe, dlqr, lqr, tvlqr};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
@@ -127,9 +127,15 @@ fn control<A: Arithmetic>() {
         pendulum.inverse_dynamics([number(), number()]),
         pendulum.regulator(number(), &weights, number()),
     ));
+    let _ = black_box(pendulum.linearize(number()).map(|model| lqr(&model, &weights, number())));
     let Ok(model) = pendulum.linearize_step(number()) else {
         return;
     };
+    let mut gains = [[number(); 4]; 2];
+    let _ = black_box(tvlqr(&[model; 2], &weights, number(), &weights, &mut gains));
+    if let Ok(filter) = black_box(dlqe(&model, &weights, [number(), number()])) {
+        black_box(filter.correct([number(); 4], [number(), number()]));
+    }
     if let Ok(regulator) = black_box(dlqr(&model, &weights, number())) {
         black_box(pendulum.state().deviation_from(state()));
         black_box(regulator.torque(pendulum.state().deviation_from(state())));
