@@ -6,7 +6,7 @@ use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
 use acrobot::control::identify::{Fit, Sample};
 use acrobot::control::model::{LinearModel, StepModel};
 use acrobot::control::plan::{self, Cost, Knot, Plan, Problem};
-use acrobot::control::regulator::{self, Feedback, Lqr, dlqr};
+use acrobot::control::regulator::{self, Feedback, Lqr, dlqr, lqr};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::{Error, Fast, Portable, State};
@@ -79,6 +79,10 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, E
         ("dlqr", &[a1, a2, a3, a4, b, q1, q2, q3, q4], &[r]) => {
             let model = StepModel { a: [a1, a2, a3, a4], b };
             of_regulator(dlqr(&model, &[q1, q2, q3, q4], r)?)
+        }
+        ("lqr", &[a1, a2, a3, a4, b, q1, q2, q3, q4], &[r]) => {
+            let model = LinearModel { a: [a1, a2, a3, a4], b };
+            of_regulator(lqr(&model, &[q1, q2, q3, q4], r)?)
         }
         ("regulator", &[state, q1, q2, q3, q4], &[torque, r]) => {
             of_regulator(at(state)?.regulator(torque, &[q1, q2, q3, q4], r)?)

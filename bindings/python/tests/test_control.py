@@ -40,11 +40,15 @@ def test_simulate_has_the_bits_of_an_environment(env):
 def test_regulators_are_those_of_python_control_and_scipy():
     rng = np.random.default_rng(0)
     for _ in range(200):
-        A, B = control.linearize_step(rng.uniform(-1, 1, 4), 0.5, ENV)
+        state = rng.uniform(-1, 1, 4)
         factor = rng.normal(size=(4, 4))
         Q, R = factor @ factor.T + ONE, rng.uniform(0.1, 1)
+        A, B = control.linearize(state, 0.5, ENV)
+        pairs = [*zip(control.lqr(A, B, Q, R), python_control.lqr(A, B, Q, R, method="scipy"))]
+        A, B = control.linearize_step(state, 0.5, ENV)
         K, P = control.dlqr(A, B, Q, R)
-        for ours, theirs in zip((K, P), python_control.dlqr(A, B, Q, R, method="scipy")):
+        pairs += zip((K, P), python_control.dlqr(A, B, Q, R, method="scipy"))
+        for ours, theirs in pairs:
             agree(ours, theirs)
     assert (control.dlqr(A, B[:, 0], Q, [[R]])[0] == K).all()
     A, B = control.linearize_step(control.UPRIGHT, 0.0, ENV)

@@ -58,6 +58,12 @@ def linearize_step(state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None) -
     return rows[..., :4, :], rows[..., 4, :, None]
 
 
+def lqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
+    """K and P as :func:`dlqr`, for a model ẋ = A x + B u: xᵀ P x is the integral of the cost."""
+    rows = _call("lqr", (5, 4), None, A=A, B=B, Q=Q, R=R)
+    return rows[..., :1, :], rows[..., 1:, :]
+
+
 def dlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
     """The linear-quadratic regulator of a model of one step.
 
