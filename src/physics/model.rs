@@ -113,6 +113,9 @@ pub trait Modeled: Real {
     #[doc(hidden)]
     fn inertias(params: &Params<Self>) -> [Self; 4];
 
+    #[doc(hidden)]
+    fn moments(params: &Params<Self>) -> [Self; 2];
+
     /// The model of `params`, given l1², lc1² and lc2².
     #[doc(hidden)]
     fn model(
@@ -252,6 +255,11 @@ for_f32_and_f64! {
             #[inline(always)]
             fn inertias(params: &Params<Self>) -> [Self; 4] {
                 params.inertias()
+            }
+
+            #[inline(always)]
+            fn moments(params: &Params<Self>) -> [Self; 2] {
+                params.moments()
             }
 
             #[inline(always)]

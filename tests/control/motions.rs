@@ -12,7 +12,7 @@ use crate::regulators::diagonal;
 /// From upright to a bent elbow, and back, with what is left of the motor for corrections.
 fn bends_and_straightens<A: Arithmetic>(params: Params, elbow: f64) {
     let (params, limit) = (params.cast::<A::Scalar>(), A::Scalar::from_f64(8.0));
-    let problem = |elbow| Problem::balance(params, limit, A::Scalar::from_f64(elbow)).unwrap();
+    let problem = |elbow| Problem::balance::<A>(params, limit, A::Scalar::from_f64(elbow)).unwrap();
     let mut machine = Pendulum::<A>::new(params, State::UPRIGHT).unwrap();
     for problem in [problem(elbow), problem(0.0)] {
         let mut planner = Planner::<A>::new(&problem).unwrap();
@@ -41,18 +41,18 @@ fn a_motion_to_a_bent_equilibrium_and_back() {
 fn a_target_is_an_equilibrium() {
     let params = Params { dt: 0.02, ..Params::DEFAULT };
     for elbow in [-3.0, -1.0, 0.0, 0.3, 2.5] {
-        let problem = Problem::balance(params, 10.0, elbow).unwrap();
+        let problem = Problem::balance::<Portable>(params, 10.0, elbow).unwrap();
         let pendulum = Pendulum::<Portable>::new(params, problem.target).unwrap();
         let rates = pendulum.derivative(problem.torque);
         assert!(rates.iter().all(|rate| rate.abs() < 1e-14), "{elbow} rad: {rates:?}");
         assert!((pendulum.tip_height() - problem.cost.height).abs() < 1e-12, "{elbow} rad");
     }
     assert_eq!(
-        Problem::balance(params, 10.0, 0.0).unwrap(),
+        Problem::balance::<Portable>(params, 10.0, 0.0).unwrap(),
         Problem::swing_up(params, 10.0).unwrap()
     );
     let error = |problem: Problem| Planner::<Portable>::new(&problem).unwrap_err().to_string();
-    let bent = Problem::balance(params, 3.0, 1.5).unwrap();
+    let bent = Problem::balance::<Portable>(params, 3.0, 1.5).unwrap();
     let rule = "the largest torque minus the target's must be finite and above 0 N m, got";
     assert!(error(bent).starts_with(rule), "{}", error(bent));
     let moving = Problem { torque: 0.0, limit: 10.0, ..bent };
@@ -65,7 +65,7 @@ fn a_target_is_an_equilibrium() {
 fn a_quadratic_cost_has_the_torques_of_a_regulator() {
     let params = Params { dt: 0.01, ..Params::DEFAULT };
     for elbow in [0.0, 1.0] {
-        let problem = Problem::balance(params, 50.0, elbow).unwrap();
+        let problem = Problem::balance::<Portable>(params, 50.0, elbow).unwrap();
         let pendulum = Pendulum::<Portable>::new(params, problem.target).unwrap();
         let (mut q, r) = (diagonal([1.0, 2.0, 3.0, 4.0]), 0.5);
         (q[0][1], q[1][0]) = (0.7, 0.7);

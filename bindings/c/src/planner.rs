@@ -111,7 +111,7 @@ pub unsafe extern "C" fn acrobot_problem_init(
     let init = || {
         let params = read(params)?;
         let Problem { target, torque, cost, .. } =
-            Problem::balance(params.try_into()?, limit, elbow)?;
+            Problem::balance::<Damped<Fast>>(params.try_into()?, limit, elbow)?;
         // SAFETY: both are `repr(C)` and have the same fields.
         let cost = transmute::<Cost<f32>, acrobot_cost_t>(cost);
         problem.write(acrobot_problem_t { params, limit, target: target.into(), torque, cost });

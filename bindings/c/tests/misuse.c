@@ -309,7 +309,7 @@ static void arguments_of_a_planner(void)
     REJECTED(NULL, acrobot_problem_init(&problem, NULL, 1, 0, NULL));
     REJECTED(OUT_OF_RANGE, acrobot_problem_init(&problem, &PARAMS, 0, 0, NULL));
     expect_message(acrobot_problem_init(&problem, &PARAMS, 1, INF, &error),
-                   "elbow must be a finite number of rad, got ");
+                   "theta2 must be a finite number of rad, got ");
     ACCEPTED(acrobot_problem_init(&problem, &PARAMS, 1, 0, NULL));
     REJECTED(NULL, acrobot_planner_init(NULL, &problem, NULL));
     REJECTED(NULL, acrobot_planner_init(planner, NULL, NULL));

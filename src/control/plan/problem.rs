@@ -1,8 +1,9 @@
 //! What is to be planned.
 
 use super::cost::Cost;
-use crate::error::{Error, Range};
-use crate::physics::{Modeled, Params, State};
+use crate::arithmetic::Arithmetic;
+use crate::error::Error;
+use crate::physics::{Modeled, Params, Pendulum, State, directions};
 
 /// A machine, where it is to go, and what the way there costs.
 ///
@@ -39,17 +40,17 @@ impl<S: Modeled> Problem<S> {
     /// The errors of [`Cost::new`].
     pub fn swing_up(params: Params<S>, limit: S) -> Result<Self, Error> {
         let cost = Cost::new(&params, limit)?;
-        Ok(Self { params, limit, target: State::UPRIGHT, torque: S::from_f64(0.0), cost })
+        Ok(Self { params, limit, target: State::UPRIGHT, torque: S::ZERO, cost })
     }
 
     /// To balance with a bent elbow: θ2, rad. The centre of mass is above the fixed joint, and the
-    /// motor holds link 2. The height of the cost is that of the tip.
+    /// motor holds link 2. The height of the cost is that of the tip. `A` computes the sines.
     ///
     /// ```
-    /// use acrobot::Params;
     /// use acrobot::control::plan::Problem;
+    /// use acrobot::{Params, Portable};
     ///
-    /// let problem = Problem::balance(Params::<f64>::DEFAULT, 10.0, 1.0)?;
+    /// let problem = Problem::balance::<Portable>(Params::DEFAULT, 10.0, 1.0)?;
     /// assert!((problem.target.theta1 - 2.908).abs() < 1e-3); // rad
     /// assert!((problem.torque + 3.399).abs() < 1e-3); // N m
     /// # Ok::<(), acrobot::Error>(())
@@ -57,25 +58,34 @@ impl<S: Modeled> Problem<S> {
     ///
     /// # Errors
     ///
-    /// The errors of [`Cost::new`], and the angle is not finite.
+    /// The errors of [`Cost::new`] and [`Pendulum::new`], and the angle is not finite.
     #[inline(never)] // saves flash
-    pub fn balance(params: Params<S>, limit: S, elbow: S) -> Result<Self, Error> {
-        let mut cost = Cost::new(&params, limit)?;
-        Range::Finite.check("elbow", elbow.to_f64(), "rad")?;
-        let wide: Params<f64> = params.cast();
-        let [moment1, moment2] = wide.moments();
-        let (sin, cos) = (libm::sin(elbow.to_f64()), libm::cos(elbow.to_f64()));
+    pub fn balance<A: Arithmetic<Scalar = S>>(
+        params: Params<S>,
+        limit: S,
+        elbow: S,
+    ) -> Result<Self, Error> {
+        let mut problem = Self::swing_up(params, limit)?;
+        problem.target.theta2 = elbow;
+        let mut pendulum = Pendulum::<A>::new(params, problem.target)?;
+        let [moment1, moment2] = S::moments(&params);
+        let [_, (sin, cos)] = pendulum.sin_cos();
         // The centre of mass relative to link 1: along it, and across.
         let (along, across) = (moment1 + moment2 * cos, moment2 * sin);
-        let distance = libm::hypot(along, across);
-        let (cos1, cos_sum) = (-along / distance, -(moment1 * cos + moment2) / distance);
-        cost.height = S::from_f64(-wide.length1 * cos1 - wide.length2 * cos_sum);
-        let target = State {
-            theta1: S::from_f64(libm::atan2(across, -along)),
-            theta2: elbow,
-            ..State::HANGING
-        };
-        let torque = S::from_f64(-wide.gravity * moment2 * moment1 * sin / distance);
-        Ok(Self { params, limit, target, torque, cost })
+        let distance = S::sqrt(along * along + across * across);
+        if along < S::ZERO {
+            problem.target.theta1 = S::ZERO;
+        }
+        // An angle x of the centre of mass from upright becomes x − sin x: no more than rounding.
+        for _ in 0..6 {
+            pendulum.set_state(problem.target)?;
+            let [(sin1, _), (sin_sum, _)] = directions(pendulum.sin_cos());
+            let lever = moment1 * sin1 + moment2 * sin_sum;
+            problem.target.theta1 = problem.target.theta1 + lever / distance;
+        }
+        pendulum.set_state(problem.target)?;
+        problem.cost.height = pendulum.tip_height();
+        problem.torque = -(params.gravity * moment2 * moment1 * sin / distance);
+        Ok(problem)
     }
 }

@@ -111,7 +111,7 @@ pub enum Kept {
 
 /// The problem to stand with an elbow angle, with the weights in the mask.
 fn problem(params: Params<f32>, limit: f32, elbow: f32, mask: u32) -> Result<Problem<f32>, Error> {
-    let mut problem = Problem::balance(params, limit, elbow)?;
+    let mut problem = Problem::balance::<Damped<Fast>>(params, limit, elbow)?;
     let cost = &mut problem.cost;
     let [angle1, angle2] = &mut cost.angles;
     let weights = [

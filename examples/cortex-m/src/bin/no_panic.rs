@@ -254,7 +254,7 @@ fn learners() {
 fn planner<A: Arithmetic>() {
     let mut memory = black_box([Knot::EMPTY; 20]);
     let mut rng = Pcg64::new(black_box(42));
-    let Ok(mut problem) = Problem::balance(params(), number(), number()) else { return };
+    let Ok(mut problem) = Problem::balance::<A>(params(), number(), number()) else { return };
     problem.cost.torque_change = number();
     if let Ok(mut planner) = Planner::<A>::new(&problem) {
         let _ = black_box(planner.improve(state(), black_box(10), &mut memory));

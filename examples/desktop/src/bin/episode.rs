@@ -48,8 +48,11 @@ fn main() -> anyhow::Result<()> {
         Some(elbow) => vec![(0.0, [0.0; 2]), (elbow, [0.0; 2]), (0.0, [0.0; 2])],
     };
     for (elbow, push) in motions {
-        let mut planner =
-            Planner::<Portable>::new(&Problem::balance(params, PLANNED * LIMIT, elbow)?)?;
+        let mut planner = Planner::<Portable>::new(&Problem::balance::<Portable>(
+            params,
+            PLANNED * LIMIT,
+            elbow,
+        )?)?;
         let mut state = acrobot.state();
         state.dtheta1 += push[0];
         state.dtheta2 += push[1];
