@@ -297,6 +297,11 @@ typedef struct {
   acrobot_cost_t cost;
 } acrobot_problem_t;
 
+// Plans motions of one machine. Call acrobot_planner_init first. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_PLANNER_SIZE];
+} acrobot_planner_t;
+
 // A step of a plan. Zeros are one without a torque.
 typedef struct {
   // The state before the step.
@@ -327,11 +332,6 @@ typedef struct {
   acrobot_region_t resting;
   float reach;
 } acrobot_feedback_t;
-
-// Plans motions of one machine. Call acrobot_planner_init first. You may copy and move it.
-typedef struct ACROBOT_ALIGNED(16) {
-  uint8_t bytes[ACROBOT_PLANNER_SIZE];
-} acrobot_planner_t;
 
 // Swings up without a plan. Call acrobot_swing_up_init first. You may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
