@@ -69,8 +69,8 @@ fn drakes_gain_is_found() {
     assert!(relative(&from_cost, &gain) < 1e-12, "{from_cost:?}");
 }
 
-/// For the recorded acrobots, in motion, too: a positive definite P that solves the equation is that
-/// of the regulator.
+/// For the recorded acrobots, in motion, too: a positive definite P that solves the equation is
+/// that of the regulator.
 #[test]
 fn costs_solve_the_equation() {
     let text = text_of("tests/data/control.txt");

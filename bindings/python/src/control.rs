@@ -130,7 +130,8 @@ impl Planner {
         weights: Weights,
     ) -> PyResult<Self> {
         let params = acrobot.acrobot.params().cast();
-        let mut problem = Problem::balance::<Damped<Fast>>(params, max_torque, elbow).map_err(rejected)?;
+        let mut problem =
+            Problem::balance::<Damped<Fast>>(params, max_torque, elbow).map_err(rejected)?;
         let own = problem.cost;
         problem.cost = Cost {
             q: weights.q.unwrap_or(own.q),

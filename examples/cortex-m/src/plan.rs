@@ -4,6 +4,7 @@ use acrobot::control::plan::{Knot, Plan};
 use acrobot::control::regulator::{Feedback, Region};
 
 #[rustfmt::skip]
+#[allow(clippy::approx_constant, reason = "numbers of the plan")]
 pub const PLAN: Plan<f32, [Knot<f32>; 120]> = Plan {
 knots: [
     Knot::new([0.0, 0.0, 0.0, 0.0], 8.0,

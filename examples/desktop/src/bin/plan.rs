@@ -78,6 +78,7 @@ fn main() -> anyhow::Result<()> {
             "// {rate} decisions a second, at most {limit} N m. Written by `plan`.\n\
             use acrobot::State;\nuse acrobot::control::plan::{{Knot, Plan}};\n\
             use acrobot::control::regulator::{{Feedback, Region}};\n\n#[rustfmt::skip]\n\
+            #[allow(clippy::approx_constant, reason = \"numbers of the plan\")]\n\
             pub const PLAN: Plan<f32, [Knot<f32>; {count}]> = Plan {{\nknots: [\n{knots}],\n\
             after: Feedback {{\n    target: State {{ theta1: {:?}, theta2: {:?}, dtheta1: {:?}, \
             dtheta2: {:?} }},\n    torque: {:?},\n    moving: {},\n    resting: {},\n    \
