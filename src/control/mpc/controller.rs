@@ -47,13 +47,14 @@ pub struct Settings {
 impl Settings {
     /// How wrong the parameters may be.
     fn doubt(&self) -> ParameterStd<f32> {
-        let Params { mass1, mass2, center_of_mass1: lc1, center_of_mass2: lc2, .. } = self.params;
+        let Params { mass1, mass2, .. } = self.params;
+        let [link1, _, link2, _] = self.params.inertias();
         let [viscous, coulomb] = [VISCOUS * self.limit, DRY * self.limit];
         ParameterStd {
             mass1: DOUBT * mass1,
             mass2: DOUBT * mass2,
-            inertia1: DOUBT * (self.params.inertia1 + mass1 * (lc1 * lc1)),
-            inertia2: DOUBT * (self.params.inertia2 + mass2 * (lc2 * lc2)),
+            inertia1: DOUBT * link1,
+            inertia2: DOUBT * link2,
             damping1: viscous,
             damping2: viscous,
             coulomb1: coulomb,
