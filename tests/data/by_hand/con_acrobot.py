@@ -34,7 +34,7 @@ PARAMS = {
     "MAX_VEL_2": np.inf,
     "dt": dt,
 }
-DEVIATIONS = {
+PARAMETER_STD = {
     "LINK_MASS_1": 0.2 * MASS1,
     "LINK_MASS_2": 0.2 * MASS2,
     "LINK_MOI_1": 0.2 * INERTIA1,
@@ -48,12 +48,12 @@ DEVIATIONS = {
 
 def plan_of_zeros(steps):
     rows, torques = np.zeros((steps, 4), np.float32), np.zeros(steps, np.float32)
-    return Plan(rows, torques, rows, DECISION * dt)
+    return Plan(rows, torques, rows, DECISION * dt, None)  # it is followed for one step
 
 
 class Acrobot(AbstractController):
     def init_(self):
-        noise = {"angle_noise": 2e-4, "torque_noise": 0.15, "deviations": DEVIATIONS}
+        noise = {"angle_std": 2e-4, "torque_std": 0.15, "parameter_std": PARAMETER_STD}
         self.estimators = {delay: Estimator(AcrobotEnv(**PARAMS), **noise) for delay in DELAYS}
         self.loss = dict.fromkeys(DELAYS, 0.0)
         self.predicted = {}
@@ -73,14 +73,14 @@ class Acrobot(AbstractController):
     def improve_plan(self, state):
         end = plan_of_zeros(100 - len(self.plan.torques))
         parts = [(getattr(self.plan, x), getattr(end, x)) for x in ("states", "torques", "gains")]
-        plan = Plan(*map(np.concatenate, parts), DECISION * dt)
+        plan = Plan(*map(np.concatenate, parts), DECISION * dt, None)
         try:
             self.plan, _ = self.planner.improve(state, plan, 10)
         except (RuntimeError, ValueError):
             pass  # it overflows: the plan before stays
 
     def get_control_output_(self, x, t=None):
-        states = {delay: each.measure(x[:2]) for delay, each in self.estimators.items()}
+        states = {delay: each.correct(x[:2]) for delay, each in self.estimators.items()}
         for delay, angles in self.predicted.items():
             error = np.sum((angles - states[delay][:2]) ** 2)
             self.loss[delay] = 0.999 * self.loss[delay] + error
@@ -99,7 +99,7 @@ class Acrobot(AbstractController):
         if self.tick % DECISION == 0:
             if len(self.plan.torques):
                 self.decision, self.plan = self.plan[:1], self.plan[1:]
-            torque = np.clip(self.planner.follow(self.decision, 0, state), -LIMIT, LIMIT)
+            torque = np.clip(self.decision.torque(0, state), -LIMIT, LIMIT)
         self.tick += 1
         self.torques = [*self.torques[1:], float(torque)]
 
@@ -108,7 +108,7 @@ class Acrobot(AbstractController):
             self.loss, self.predicted = {self.delay: 0.0}, {}
         for delay, estimator in self.estimators.items():
             torque = self.torques[-1 - delay]
-            estimator.step(torque)
+            estimator.predict(torque)
             if self.tick < CHOOSING:
                 self.predicted[delay] = simulate(states[delay], [torque], self.model)[-1][:2]
         return [0.0, self.torques[-1]]
