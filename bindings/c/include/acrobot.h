@@ -34,7 +34,7 @@
 #define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * (48 + 64))
 #endif
 
-// Each night CI compares the rest, except its comments, with the library's source, by cbindgen.
+// cbindgen writes the rest, and its comments, from the library's source.
 
 // Action 0: −1 N m by default.
 #define ACROBOT_ACTION_NEGATIVE 0
@@ -376,16 +376,16 @@ acrobot_status_t acrobot_reset(acrobot_t *acrobot, acrobot_observation_t *observ
 
 // As acrobot_reset after seeding: Gymnasium's `reset(seed=seed)`.
 acrobot_status_t acrobot_reset_with_seed(acrobot_t *acrobot,
-    uint64_t seed,
-    acrobot_observation_t *observation);
+                                         uint64_t seed,
+                                         acrobot_observation_t *observation);
 
 // As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
 // rad/s; −0.1 and 0.1 by default. Both must be finite as float, and `low` at most `high`.
 acrobot_status_t acrobot_reset_within(acrobot_t *acrobot,
-    double low,
-    double high,
-    acrobot_observation_t *observation,
-    acrobot_error_t *error);
+                                      double low,
+                                      double high,
+                                      acrobot_observation_t *observation,
+                                      acrobot_error_t *error);
 
 // Applies the torque of an ACROBOT_ACTION for one dt. After the end of an episode call
 // acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
@@ -393,9 +393,9 @@ acrobot_status_t acrobot_step(acrobot_t *acrobot, int action, acrobot_step_t *st
 
 // Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it.
 acrobot_status_t acrobot_step_torque(acrobot_t *acrobot,
-    float torque,
-    acrobot_step_t *step,
-    acrobot_error_t *error);
+                                     float torque,
+                                     acrobot_step_t *step,
+                                     acrobot_error_t *error);
 
 acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t *observation);
 
@@ -404,27 +404,27 @@ acrobot_status_t acrobot_elapsed_steps(const acrobot_t *acrobot, uint32_t *steps
 
 // Episodes are truncated after so many steps, above 0; 500 by default.
 acrobot_status_t acrobot_set_max_steps(acrobot_t *acrobot,
-    uint32_t max_steps,
-    acrobot_error_t *error);
+                                       uint32_t max_steps,
+                                       acrobot_error_t *error);
 
 acrobot_status_t acrobot_state(const acrobot_t *acrobot, acrobot_state_t *state);
 
 // The number of steps stays.
 acrobot_status_t acrobot_set_state(acrobot_t *acrobot,
-    const acrobot_state_t *state,
-    acrobot_error_t *error);
+                                   const acrobot_state_t *state,
+                                   acrobot_error_t *error);
 
 acrobot_status_t acrobot_params(const acrobot_t *acrobot, acrobot_params_t *params);
 
 // Sets the parameters of the next steps. The state stays.
 acrobot_status_t acrobot_set_params(acrobot_t *acrobot,
-    const acrobot_params_t *params,
-    acrobot_error_t *error);
+                                    const acrobot_params_t *params,
+                                    acrobot_error_t *error);
 
 // Draws parameters from the acrobot's generator: call it after a reset.
 acrobot_status_t acrobot_draw_params(acrobot_t *acrobot,
-    const acrobot_draws_t *draws,
-    acrobot_error_t *error);
+                                     const acrobot_draws_t *draws,
+                                     acrobot_error_t *error);
 
 // The total energy of the state, J.
 acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
@@ -434,15 +434,15 @@ acrobot_status_t acrobot_tip_height(const acrobot_t *acrobot, float *height);
 
 // The deviation of the state from a finite `target`, with angles wrapped to ±π.
 acrobot_status_t acrobot_deviation_from(const acrobot_t *acrobot,
-    const acrobot_state_t *target,
-    acrobot_state_t *deviation);
+                                        const acrobot_state_t *target,
+                                        acrobot_state_t *deviation);
 
 // Linearizes one step of the acrobot about any state and torque, N m.
 acrobot_status_t acrobot_linearize_step(acrobot_t *acrobot,
-    const acrobot_state_t *state,
-    float torque,
-    acrobot_step_model_t *model,
-    acrobot_error_t *error);
+                                        const acrobot_state_t *state,
+                                        float torque,
+                                        acrobot_step_model_t *model,
+                                        acrobot_error_t *error);
 
 // The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque is
 // −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
@@ -452,77 +452,77 @@ acrobot_status_t acrobot_linearize_step(acrobot_t *acrobot,
 // has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that of
 // the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the `gain`.
 acrobot_status_t acrobot_regulator(acrobot_t *acrobot,
-    const acrobot_state_t *target,
-    const acrobot_state_t *q,
-    float r,
-    acrobot_state_t *gain,
-    acrobot_error_t *error);
+                                   const acrobot_state_t *target,
+                                   const acrobot_state_t *q,
+                                   float r,
+                                   acrobot_state_t *gain,
+                                   acrobot_error_t *error);
 
 // The problem to stand with an `elbow` angle, rad, for a largest torque, N m: 0 is a swing-up. It
 // has the default weights, which follow from the size of the machine. Then you may change them.
 acrobot_status_t acrobot_problem_init(acrobot_problem_t *problem,
-    const acrobot_params_t *params,
-    float limit,
-    float elbow,
-    acrobot_error_t *error);
+                                      const acrobot_params_t *params,
+                                      float limit,
+                                      float elbow,
+                                      acrobot_error_t *error);
 
 // No velocity of a plan reaches its bound.
 acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
-    const acrobot_problem_t *problem,
-    acrobot_error_t *error);
+                                      const acrobot_problem_t *problem,
+                                      acrobot_error_t *error);
 
 // Plans until a plan ends where the regulator holds the target. `length` receives its number of
 // knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls may
 // change knots.
 acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
-    const acrobot_state_t *start,
-    uint32_t tries,
-    uint64_t seed,
-    acrobot_knot_t *knots,
-    size_t count,
-    size_t *length,
-    acrobot_error_t *error);
+                                      const acrobot_state_t *start,
+                                      uint32_t tries,
+                                      uint64_t seed,
+                                      acrobot_knot_t *knots,
+                                      size_t count,
+                                      size_t *length,
+                                      acrobot_error_t *error);
 
 // Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
 // `cost` receives what it costs.
 acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
-    const acrobot_state_t *start,
-    uint32_t iterations,
-    acrobot_knot_t *knots,
-    size_t length,
-    float *cost,
-    acrobot_error_t *error);
+                                         const acrobot_state_t *start,
+                                         uint32_t iterations,
+                                         acrobot_knot_t *knots,
+                                         size_t length,
+                                         float *cost,
+                                         acrobot_error_t *error);
 
 // What holds the target after each plan.
 acrobot_status_t acrobot_planner_feedback(const acrobot_planner_t *planner,
-    acrobot_feedback_t *feedback);
+                                          acrobot_feedback_t *feedback);
 
 // Whether this feedback, with the largest torque, takes the machine from a state to the target.
 acrobot_status_t acrobot_planner_holds_from(const acrobot_planner_t *planner,
-    const acrobot_state_t *state,
-    bool *holds);
+                                            const acrobot_state_t *state,
+                                            bool *holds);
 
 // The torque at a step of a plan, N m, and after it that of the feedback. Clamp it to that of your
 // motor. It needs no planner, so knots and feedback may be constants.
 acrobot_status_t acrobot_plan_torque(const acrobot_knot_t *knots,
-    size_t length,
-    const acrobot_feedback_t *after,
-    size_t step,
-    const acrobot_state_t *state,
-    float *torque);
+                                     size_t length,
+                                     const acrobot_feedback_t *after,
+                                     size_t step,
+                                     const acrobot_state_t *state,
+                                     float *torque);
 
 // For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
 // torque, N m.
 acrobot_status_t acrobot_swing_up_init(acrobot_swing_up_t *swing_up,
-    const acrobot_params_t *params,
-    float limit,
-    acrobot_error_t *error);
+                                       const acrobot_params_t *params,
+                                       float limit,
+                                       acrobot_error_t *error);
 
 // The torque without a plan, N m, at most the largest. It pumps energy until the regulator holds.
 acrobot_status_t acrobot_swing_up_torque(acrobot_swing_up_t *swing_up,
-    const acrobot_state_t *state,
-    float *torque,
-    acrobot_error_t *error);
+                                         const acrobot_state_t *state,
+                                         float *torque,
+                                         acrobot_error_t *error);
 
 // Gymnasium's `action_space.seed(seed)`.
 acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space, uint64_t seed);
@@ -537,21 +537,21 @@ size_t acrobot_batch_size(size_t count);
 // Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`. `batch` receives the
 // batch's address.
 acrobot_status_t acrobot_batch_init(void *memory,
-    size_t size,
-    size_t count,
-    uint64_t seed,
-    acrobot_batch_t **batch);
+                                    size_t size,
+                                    size_t count,
+                                    uint64_t seed,
+                                    acrobot_batch_t **batch);
 
 // Applies an action to each acrobot for one dt. If one is rejected, no acrobot steps, but
 // `terminated` and `truncated` become false.
 acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch,
-    const uint8_t *actions,
-    const acrobot_batch_results_t *results,
-    size_t count);
+                                    const uint8_t *actions,
+                                    const acrobot_batch_results_t *results,
+                                    size_t count);
 
 acrobot_status_t acrobot_batch_observe(const acrobot_batch_t *batch,
-    acrobot_observation_t *observations,
-    size_t count);
+                                       acrobot_observation_t *observations,
+                                       size_t count);
 
 acrobot_status_t acrobot_batch_count(const acrobot_batch_t *batch, size_t *count);
 
@@ -563,41 +563,41 @@ acrobot_status_t acrobot_batch_reset_with_seed(acrobot_batch_t *batch, uint64_t 
 
 // As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.
 acrobot_status_t acrobot_batch_reset_with_seeds(acrobot_batch_t *batch,
-    const uint64_t *seeds,
-    size_t count);
+                                                const uint64_t *seeds,
+                                                size_t count);
 
 // As acrobot_batch_reset, where `mask` is true. A byte that is neither true nor false is rejected.
 acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch, const bool *mask, size_t count);
 
 // When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
 acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
-    int autoreset,
-    acrobot_error_t *error);
+                                             int autoreset,
+                                             acrobot_error_t *error);
 
 // As acrobot_set_max_steps, for all acrobots.
 acrobot_status_t acrobot_batch_set_max_steps(acrobot_batch_t *batch,
-    uint32_t max_steps,
-    acrobot_error_t *error);
+                                             uint32_t max_steps,
+                                             acrobot_error_t *error);
 
 acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch,
-    size_t index,
-    acrobot_state_t *state);
+                                     size_t index,
+                                     acrobot_state_t *state);
 
 // The number of its steps stays.
 acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
-    size_t index,
-    const acrobot_state_t *state,
-    acrobot_error_t *error);
+                                         size_t index,
+                                         const acrobot_state_t *state,
+                                         acrobot_error_t *error);
 
 acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch, acrobot_params_t *params);
 
 // As acrobot_set_params, for all acrobots.
 acrobot_status_t acrobot_batch_set_params(acrobot_batch_t *batch,
-    const acrobot_params_t *params,
-    acrobot_error_t *error);
+                                          const acrobot_params_t *params,
+                                          acrobot_error_t *error);
 
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
 
-#endif  /* ACROBOT_H */
+#endif // ACROBOT_H

@@ -8,8 +8,10 @@ use acrobot::numpy::Pcg64;
 use crate::memory::{Holder, change, check};
 use crate::status::{acrobot_status_t, status};
 
+/// Bytes of an acrobot_action_space_t.
 pub const ACROBOT_ACTION_SPACE_SIZE: usize = 64;
 
+/// Draws random actions: Gymnasium's `action_space`. You may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_action_space_t {
     bytes: [u8; ACROBOT_ACTION_SPACE_SIZE],
@@ -21,6 +23,7 @@ impl Holder for acrobot_action_space_t {
     const TAG: u32 = u32::from_le_bytes(*b"acts");
 }
 
+/// Gymnasium's `action_space.seed(seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_action_space_init(
     action_space: *mut acrobot_action_space_t,
@@ -29,6 +32,7 @@ pub unsafe extern "C" fn acrobot_action_space_init(
     status(|| Holder::init(action_space, Pcg64::new(seed)))
 }
 
+/// Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_action_space_sample(
     action_space: *mut acrobot_action_space_t,

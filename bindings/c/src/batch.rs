@@ -13,6 +13,7 @@ use crate::memory::{Holder, Span, array, change, check, check_apart, get, option
 use crate::single::check_max_steps;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
+/// Alignment of a batch's memory.
 pub const ACROBOT_BATCH_ALIGN: usize = 64;
 
 // The header has these numbers, too: ACROBOT_BATCH_SIZE.
@@ -22,24 +23,37 @@ const GENERATOR: usize = 48;
 const LANES: usize = if usize::BITS == 64 { 16 } else { 1 };
 const BLOCK: usize = if usize::BITS == 64 { 640 } else { 64 };
 
+/// The default: the step after an episode's end resets the acrobot. It ignores the action and
+/// returns the initial observation and a reward of 0.
 pub const ACROBOT_AUTORESET_NEXT_STEP: c_int = 0;
 
+/// The step that ends an episode resets the acrobot. It returns the initial observation, and the
+/// last one in `final_observations`.
 pub const ACROBOT_AUTORESET_SAME_STEP: c_int = 1;
 
+/// The acrobots step on until acrobot_batch_reset_masked or another reset.
 pub const ACROBOT_AUTORESET_DISABLED: c_int = 2;
 
+/// Acrobots in the memory of acrobot_batch_init. It contains pointers into this memory, so do not
+/// move or copy it.
 #[repr(align(64))]
 pub struct acrobot_batch_t {
     _header: [u8; HEADER],
 }
 
+/// Where acrobot_batch_step writes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_batch_results_t {
+    /// −1, or 0 if the acrobot terminated or was only reset.
     pub rewards: *mut f32,
+    /// As in acrobot_step_t.
     pub terminated: *mut bool,
     pub truncated: *mut bool,
+    /// Of the new states; null if you do not need them.
     pub observations: *mut acrobot_observation_t,
+    /// With ACROBOT_AUTORESET_SAME_STEP, those of the episodes that this step ended; other elements
+    /// are not written. Null if you do not need them.
     pub final_observations: *mut acrobot_observation_t,
 }
 
@@ -89,6 +103,7 @@ fn memory_of(batch: *const acrobot_batch_t, count: usize) -> Span {
     Span::new(batch.cast::<u8>(), acrobot_batch_size(count))
 }
 
+/// ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
     let blocks = count.div_ceil(LANES);
@@ -98,6 +113,9 @@ pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
         .saturating_add(HEADER)
 }
 
+/// Makes a batch in `memory`, which has `size` bytes, with default parameters, in initial states.
+/// Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`. `batch` receives the
+/// batch's address.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_init(
     memory: *mut c_void,
@@ -136,6 +154,8 @@ pub unsafe extern "C" fn acrobot_batch_init(
     })
 }
 
+/// Applies an action to each acrobot for one dt. If one is rejected, no acrobot steps, but
+/// `terminated` and `truncated` become false.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_step(
     batch: *mut acrobot_batch_t,
@@ -196,6 +216,7 @@ pub unsafe extern "C" fn acrobot_batch_count(
     get(batch, count, |placed| Ok(placed.batch.len()))
 }
 
+/// As acrobot_reset, for each acrobot.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset(batch: *mut acrobot_batch_t) -> acrobot_status_t {
     status(|| {
@@ -204,6 +225,7 @@ pub unsafe extern "C" fn acrobot_batch_reset(batch: *mut acrobot_batch_t) -> acr
     })
 }
 
+/// As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     batch: *mut acrobot_batch_t,
@@ -215,6 +237,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     })
 }
 
+/// As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset_with_seeds(
     batch: *mut acrobot_batch_t,
@@ -233,6 +256,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seeds(
     })
 }
 
+/// As acrobot_batch_reset, where `mask` is true. A byte that is neither true nor false is rejected.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset_masked(
     batch: *mut acrobot_batch_t,
@@ -251,6 +275,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
     })
 }
 
+/// When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     batch: *mut acrobot_batch_t,
@@ -268,6 +293,7 @@ pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     })
 }
 
+/// As acrobot_set_max_steps, for all acrobots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_max_steps(
     batch: *mut acrobot_batch_t,
@@ -289,6 +315,7 @@ pub unsafe extern "C" fn acrobot_batch_state(
     get(batch, state, |placed| Ok(placed.batch.state(index)?.into()))
 }
 
+/// The number of its steps stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_state(
     batch: *mut acrobot_batch_t,
@@ -309,6 +336,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     get(batch, params, |placed| Ok(placed.batch.params(0).unwrap_or(Params::DEFAULT).into()))
 }
 
+/// As acrobot_set_params, for all acrobots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_params(
     batch: *mut acrobot_batch_t,

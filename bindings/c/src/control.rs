@@ -10,6 +10,7 @@ use crate::memory::{change, check, get, read};
 use crate::single::acrobot_t;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
+/// The deviation of the state from a finite `target`, with angles wrapped to ±π.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_deviation_from(
     acrobot: *const acrobot_t,
@@ -23,12 +24,15 @@ pub unsafe extern "C" fn acrobot_deviation_from(
     })
 }
 
+/// One step, linearized: deviations x of the state and u of the torque become A x + B u.
 #[repr(C)]
 pub struct acrobot_step_model_t {
+    /// A by rows, and B.
     pub a: [[f32; 4]; 4],
     pub b: [f32; 4],
 }
 
+/// Linearizes one step of the acrobot about any state and torque, N m.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_linearize_step(
     acrobot: *mut acrobot_t,
@@ -45,6 +49,13 @@ pub unsafe extern "C" fn acrobot_linearize_step(
     })
 }
 
+/// The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque is
+/// −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
+///
+/// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
+/// accelerations of at most 0.25 % of that of the straight acrobot that falls from horizontal. `q`
+/// has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that of
+/// the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the `gain`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_regulator(
     acrobot: *mut acrobot_t,

@@ -9,16 +9,23 @@ use acrobot::{Params, State, Step};
 
 use crate::status::Rejected;
 
+/// Action 0: −1 N m by default.
 pub const ACROBOT_ACTION_NEGATIVE: c_int = 0;
 
+/// Action 1: no torque by default.
 pub const ACROBOT_ACTION_ZERO: c_int = 1;
 
+/// Action 2: +1 N m by default.
 pub const ACROBOT_ACTION_POSITIVE: c_int = 2;
 
+/// The equations of Sutton & Barto's book: the physical double pendulum. Gymnasium's default.
 pub const ACROBOT_DYNAMICS_BOOK: c_int = 0;
 
+/// The equations of Sutton's paper of 1996 (NIPS 8), which do not conserve energy.
 pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
+/// Cosine and sine of each angle of the acrobot_state_t, and its angular velocities, rad/s; six
+/// floats without padding.
 #[repr(C)]
 pub struct acrobot_observation_t {
     pub cos_theta1: f32,
@@ -37,9 +44,13 @@ impl From<[f32; 6]> for acrobot_observation_t {
 
 #[repr(C)]
 pub struct acrobot_step_t {
+    /// The observation of the new state.
     pub observation: acrobot_observation_t,
+    /// −1, or 0 if `terminated`.
     pub reward: f32,
+    /// Whether −cos θ1 − cos(θ1 + θ2) > 1: the goal.
     pub terminated: bool,
+    /// Whether the time limit is reached: 500 steps by default.
     pub truncated: bool,
 }
 
@@ -54,12 +65,17 @@ impl From<Step> for acrobot_step_t {
     }
 }
 
+/// A state of finite numbers. A step wraps the angles to ±π and bounds the velocities.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_state_t {
+    /// Angle of link 1, rad; 0 = hanging straight down, counter-clockwise positive.
     pub theta1: f32,
+    /// Angle of link 2 relative to link 1, rad; 0 = in line with it.
     pub theta2: f32,
+    /// Angular velocity of link 1, rad/s.
     pub dtheta1: f32,
+    /// Angular velocity of link 2 relative to link 1, rad/s.
     pub dtheta2: f32,
 }
 
@@ -76,49 +92,84 @@ impl From<acrobot_state_t> for State<f32> {
     }
 }
 
+/// To change one parameter, read all with acrobot_params, and set them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_params_t {
+    /// Length of link 1, m; above 0. Default 1.
     pub length1: f32,
+    /// Length of link 2, m; above 0. Default 1. Only the height of the tip depends on it.
     pub length2: f32,
+    /// Mass of link 1, kg; above 0. Default 1.
     pub mass1: f32,
+    /// As `mass1`, of link 2.
     pub mass2: f32,
+    /// Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5.
     pub center_of_mass1: f32,
+    /// As `center_of_mass1`, of link 2.
     pub center_of_mass2: f32,
+    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
+    /// centre of mass is on the joint. Default 1.
     pub inertia1: f32,
+    /// As `inertia1`, of link 2.
     pub inertia2: f32,
+    /// Acceleration of gravity, m/s², downwards; finite. Default 9.8.
     pub gravity: f32,
+    /// Duration of one step, s; above 0. Default 0.2.
     pub dt: f32,
+    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, INFINITY for none. Default 4 π.
     pub max_velocity1: f32,
+    /// As `max_velocity1`, of |θ̇2|. Default 9 π.
     pub max_velocity2: f32,
+    /// Torques of the three actions, N m, in their order; finite. Default −1, 0 and 1.
     pub torques: [f32; 3],
+    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
+    /// torque; 0, the default, draws nothing.
     pub torque_noise: f32,
+    /// Viscous friction of the fixed joint, N m s/rad; 0 or more. Default 0. This and the next four
+    /// must be 0 in a batch.
     pub damping1: f32,
+    /// As `damping1`, of the elbow.
     pub damping2: f32,
+    /// Coulomb friction of the fixed joint, N m; 0 or more. Default 0.
     pub coulomb1: f32,
+    /// As `coulomb1`, of the elbow.
     pub coulomb2: f32,
+    /// What a geared rotor takes from the coupling of the links, kg m²; finite, and so small that the
+    /// mass matrix is positive definite. Default 0. A rotor of moment of inertia J, kg m², behind a
+    /// gear g in the elbow adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1) g J here.
     pub rotor: f32,
+    /// The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
     pub dynamics: c_int,
 }
 
+/// The parameter stays as it is.
 pub const ACROBOT_DRAW_FIXED: c_int = 0;
 
+/// Uniformly from `low` to `high`.
 pub const ACROBOT_DRAW_UNIFORM: c_int = 1;
 
+/// Its logarithm uniformly; `low` is above 0.
 pub const ACROBOT_DRAW_LOG_UNIFORM: c_int = 2;
 
+/// From a normal distribution truncated at `low` and `high`. `mean` is between these, and the
+/// standard deviation above 0.
 pub const ACROBOT_DRAW_NORMAL: c_int = 3;
 
+/// How a parameter is drawn.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_draw_t {
+    /// One of the ACROBOT_DRAW numbers.
     pub kind: c_int,
     pub low: f32,
     pub high: f32,
     pub mean: f32,
+    /// The standard deviation.
     pub std: f32,
 }
 
+/// How each parameter is drawn, in the order of acrobot_params_t. Zeros draw nothing.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_draws_t {

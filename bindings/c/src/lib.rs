@@ -1,5 +1,5 @@
-//! The functions of `include/acrobot.h`, which says what they do. CI compares its declarations with
-//! those that cbindgen writes from these files.
+//! The functions of `include/acrobot.h`, which cbindgen writes from these files, with their
+//! comments: `cbindgen --output include/acrobot.h`. Each night CI compares.
 //!
 //! All `unsafe` is here: the crate sees only valid references.
 

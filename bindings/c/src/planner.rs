@@ -12,58 +12,88 @@ use crate::data::{acrobot_params_t, acrobot_state_t};
 use crate::memory::{Holder, Span, array, change, check, check_apart, check_result, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, status};
 
+/// The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_cost_t {
+    /// Q of xᵀ Q x for the deviation x from the target, by rows, symmetric: 1/(rad² s), 1/rad² and
+    /// s/rad².
     pub q: [[f32; 4]; 4],
+    /// The same of the state after the plan: 1/rad², s/rad² and s²/rad².
     pub qf: [[f32; 4]; 4],
+    /// Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s.
     pub angles: [f32; 2],
+    /// Of the squared difference of the torque from that which holds the target, 1/((N m)² s).
     pub torque: f32,
+    /// Of the squared change of the torque from step to step, 1/(N m)².
     pub torque_change: f32,
+    /// Of the absolute value of the motor's power, 1/J.
     pub power: f32,
+    /// Of the time that the tip is below `height`, 1/s.
     pub below: f32,
+    /// A height of the tip above the fixed joint, m.
     pub height: f32,
+    /// `below` costs half where the tip is so far below `height`, m; above 0.
     pub margin: f32,
+    /// Of ln(1 + e) after the plan, where e is 1 at the border of the region in which the regulator
+    /// holds.
     pub arrival: f32,
 }
 
+/// A machine, where it is to go, and what the way there costs.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_problem_t {
+    /// `dt` is the time between two decisions.
     pub params: acrobot_params_t,
+    /// The largest torque, N m.
     pub limit: f32,
+    /// The equilibrium in which a plan ends, and the torque that holds it, N m.
     pub target: acrobot_state_t,
     pub torque: f32,
     pub cost: acrobot_cost_t,
 }
 
+/// A step of a plan. Zeros are one without a torque.
 #[repr(C)]
 pub struct acrobot_knot_t {
+    /// The state before the step.
     pub state: acrobot_state_t,
+    /// N m.
     pub torque: f32,
+    /// K of torque − K x for the deviation x from `state`, N m per rad and per rad/s.
     pub gain: acrobot_state_t,
+    /// For the planner.
     pub workspace: [f32; 2],
 }
 
+/// A gain, and the region in which its torque lasts.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_region_t {
+    /// K of −K x for a deviation x, N m per rad and per rad/s.
     pub gain: acrobot_state_t,
+    /// F by rows: x is in the region if |F x| is below 1.
     pub factor: [[f32; 4]; 4],
 }
 
+/// What holds the target after a plan. It can be a constant.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_feedback_t {
     pub target: acrobot_state_t,
+    /// The torque that holds the target, N m.
     pub torque: f32,
+    /// The gain in motion, and at rest, which is used where |F x|² is below `reach`.
     pub moving: acrobot_region_t,
     pub resting: acrobot_region_t,
     pub reach: f32,
 }
 
+/// Bytes of an acrobot_planner_t.
 pub const ACROBOT_PLANNER_SIZE: usize = 752;
 
+/// Plans motions of one machine. Call acrobot_planner_init first. You may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_planner_t {
     bytes: [u8; ACROBOT_PLANNER_SIZE],
@@ -75,8 +105,10 @@ impl Holder for acrobot_planner_t {
     const TAG: u32 = u32::from_le_bytes(*b"plan");
 }
 
+/// Bytes of an acrobot_swing_up_t.
 pub const ACROBOT_SWING_UP_SIZE: usize = 496;
 
+/// Swings up without a plan. Call acrobot_swing_up_init first. You may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_swing_up_t {
     bytes: [u8; ACROBOT_SWING_UP_SIZE],
@@ -100,6 +132,8 @@ fn knots_of(
     Ok(knots)
 }
 
+/// The problem to stand with an `elbow` angle, rad, for a largest torque, N m: 0 is a swing-up. It
+/// has the default weights, which follow from the size of the machine. Then you may change them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_problem_init(
     problem: *mut acrobot_problem_t,
@@ -123,6 +157,7 @@ pub unsafe extern "C" fn acrobot_problem_init(
     })
 }
 
+/// No velocity of a plan reaches its bound.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_init(
     planner: *mut acrobot_planner_t,
@@ -142,6 +177,9 @@ pub unsafe extern "C" fn acrobot_planner_init(
     })
 }
 
+/// Plans until a plan ends where the regulator holds the target. `length` receives its number of
+/// knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls may
+/// change knots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_plan(
     planner: *mut acrobot_planner_t,
@@ -161,6 +199,8 @@ pub unsafe extern "C" fn acrobot_planner_plan(
     })
 }
 
+/// Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
+/// `cost` receives what it costs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_improve(
     planner: *mut acrobot_planner_t,
@@ -178,6 +218,7 @@ pub unsafe extern "C" fn acrobot_planner_improve(
     })
 }
 
+/// What holds the target after each plan.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_feedback(
     planner: *const acrobot_planner_t,
@@ -189,6 +230,7 @@ pub unsafe extern "C" fn acrobot_planner_feedback(
     })
 }
 
+/// Whether this feedback, with the largest torque, takes the machine from a state to the target.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_holds_from(
     planner: *const acrobot_planner_t,
@@ -202,6 +244,8 @@ pub unsafe extern "C" fn acrobot_planner_holds_from(
     })
 }
 
+/// The torque at a step of a plan, N m, and after it that of the feedback. Clamp it to that of your
+/// motor. It needs no planner, so knots and feedback may be constants.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_plan_torque(
     knots: *const acrobot_knot_t,
@@ -223,6 +267,8 @@ pub unsafe extern "C" fn acrobot_plan_torque(
     })
 }
 
+/// For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
+/// torque, N m.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_swing_up_init(
     swing_up: *mut acrobot_swing_up_t,
@@ -237,6 +283,7 @@ pub unsafe extern "C" fn acrobot_swing_up_init(
     })
 }
 
+/// The torque without a plan, N m, at most the largest. It pumps energy until the regulator holds.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_swing_up_torque(
     swing_up: *mut acrobot_swing_up_t,

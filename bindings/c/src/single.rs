@@ -15,10 +15,13 @@ use crate::memory::{Holder, change, check, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 use crate::task::AnyTask;
 
+/// Bytes of an acrobot_t.
 pub const ACROBOT_SIZE: usize = 272;
 
+/// Its alignment. malloc may align less, on microcontrollers to 8 bytes.
 pub const ACROBOT_ALIGN: usize = 16;
 
+/// One acrobot: Gymnasium's `Acrobot-v1`. Call acrobot_init first. You may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],
@@ -32,11 +35,14 @@ impl Holder for acrobot_t {
 
 const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
+/// Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
     status(|| Holder::init(acrobot, TimeLimit::with_task_limit(Acrobot::new(seed))))
 }
 
+/// The task to stay upright: steps of 0.02 s, a motor of 10 N m, initial states near upright, and no
+/// end. The reward is 1 upright and 0 hanging.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init_balance(
     acrobot: *mut acrobot_t,
@@ -51,6 +57,7 @@ pub unsafe extern "C" fn acrobot_init_balance(
     })
 }
 
+/// Begins an episode in a drawn initial state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset(
     acrobot: *mut acrobot_t,
@@ -59,6 +66,7 @@ pub unsafe extern "C" fn acrobot_reset(
     change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(acrobot.reset().into()))
 }
 
+/// As acrobot_reset after seeding: Gymnasium's `reset(seed=seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_with_seed(
     acrobot: *mut acrobot_t,
@@ -70,6 +78,8 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
     })
 }
 
+/// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
+/// rad/s; −0.1 and 0.1 by default. Both must be finite as float, and `low` at most `high`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_within(
     acrobot: *mut acrobot_t,
@@ -84,6 +94,8 @@ pub unsafe extern "C" fn acrobot_reset_within(
     })
 }
 
+/// Applies the torque of an ACROBOT_ACTION for one dt. After the end of an episode call
+/// acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step(
     acrobot: *mut acrobot_t,
@@ -97,6 +109,7 @@ pub unsafe extern "C" fn acrobot_step(
     })
 }
 
+/// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step_torque(
     acrobot: *mut acrobot_t,
@@ -118,6 +131,7 @@ pub unsafe extern "C" fn acrobot_observe(
     get(acrobot, observation, |acrobot| Ok(acrobot.observation().into()))
 }
 
+/// Steps since the last reset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_elapsed_steps(
     acrobot: *const acrobot_t,
@@ -126,6 +140,7 @@ pub unsafe extern "C" fn acrobot_elapsed_steps(
     get(acrobot, steps, |acrobot| Ok(acrobot.elapsed_steps()))
 }
 
+/// Episodes are truncated after so many steps, above 0; 500 by default.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_max_steps(
     acrobot: *mut acrobot_t,
@@ -150,6 +165,7 @@ pub unsafe extern "C" fn acrobot_state(
     get(acrobot, state, |acrobot| Ok(acrobot.state().into()))
 }
 
+/// The number of steps stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_state(
     acrobot: *mut acrobot_t,
@@ -169,6 +185,7 @@ pub unsafe extern "C" fn acrobot_params(
     get(acrobot, params, |acrobot| Ok((*acrobot.params()).into()))
 }
 
+/// Sets the parameters of the next steps. The state stays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_params(
     acrobot: *mut acrobot_t,
@@ -180,6 +197,7 @@ pub unsafe extern "C" fn acrobot_set_params(
     })
 }
 
+/// Draws parameters from the acrobot's generator: call it after a reset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_draw_params(
     acrobot: *mut acrobot_t,
@@ -191,6 +209,7 @@ pub unsafe extern "C" fn acrobot_draw_params(
     })
 }
 
+/// The total energy of the state, J.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_energy(
     acrobot: *const acrobot_t,
@@ -199,6 +218,7 @@ pub unsafe extern "C" fn acrobot_energy(
     get(acrobot, energy, |acrobot| Ok(acrobot.pendulum().energy()))
 }
 
+/// The height of the tip above the fixed joint, m.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_tip_height(
     acrobot: *const acrobot_t,

@@ -7,25 +7,37 @@ use acrobot::Error;
 #[repr(C)]
 pub enum acrobot_status_t {
     ACROBOT_OK = 0,
+    /// A pointer is null that must not be.
     ACROBOT_ERROR_NULL = 1,
+    /// A pointer is not aligned as its type demands; a batch needs ACROBOT_BATCH_ALIGN.
     ACROBOT_ERROR_MISALIGNED = 2,
     ACROBOT_ERROR_BUFFER_TOO_SMALL = 3,
+    /// No `_init` function has initialized the memory, or it has been overwritten.
     ACROBOT_ERROR_NOT_INITIALIZED = 4,
+    /// The batch was copied to another address.
     ACROBOT_ERROR_MOVED = 5,
     ACROBOT_ERROR_UNKNOWN_ACTION = 6,
+    /// A number is outside its range, infinite or NaN. An argument `error` says which.
     ACROBOT_ERROR_OUT_OF_RANGE = 7,
+    /// The count is 0, or not that of the batch.
     ACROBOT_ERROR_WRONG_COUNT = 8,
     ACROBOT_ERROR_NO_SUCH_INDEX = 9,
+    /// Two arguments overlap: arrays, or a result and the acrobot or batch.
     ACROBOT_ERROR_OVERLAP = 10,
 }
 
 use acrobot_status_t::*;
 
+/// Why a number is out of range, as UTF-8:
+/// `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
 #[repr(C)]
 pub struct acrobot_error_t {
     pub value: f64,
+    /// `"dt"`
     pub name: [c_char; 24],
+    /// `"s"`
     pub unit: [c_char; 16],
+    /// `"finite and above 0 s"`
     pub rule: [c_char; 64],
 }
 
@@ -110,6 +122,7 @@ fn text<const N: usize>(texts: [&str; 3]) -> [c_char; N] {
     to
 }
 
+/// The text of any status. It is constant: do not free it.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
     let text = match status {
