@@ -210,9 +210,10 @@ typedef struct {
   float coulomb1;
   // As `coulomb1`, of the elbow.
   float coulomb2;
-  // What a geared rotor takes from the coupling of the links, kg m²; finite, and so small that the
-  // mass matrix is positive definite. Default 0. A rotor of moment of inertia J, kg m², behind a
-  // gear g in the elbow adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1) g J here.
+  // What a geared rotor takes from the coupling of the links, kg m²; finite, and so small that
+  // the mass matrix is positive definite. Default 0. A rotor of moment of inertia J, kg m²,
+  // behind a gear g in the elbow adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1)
+  // g J here.
   float rotor;
   // The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
   int dynamics;
@@ -367,8 +368,8 @@ const char *acrobot_status_text(int status);
 // Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
 acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
 
-// The task to stay upright: steps of 0.02 s, a motor of 10 N m, initial states near upright, and no
-// end. The reward is 1 upright and 0 hanging.
+// The task to stay upright: steps of 0.02 s, a motor of 10 N m, initial states near upright, and
+// no end. The reward is 1 upright and 0 hanging.
 acrobot_status_t acrobot_init_balance(acrobot_t *acrobot, uint64_t seed);
 
 // Begins an episode in a drawn initial state.
@@ -449,8 +450,9 @@ acrobot_status_t acrobot_linearize_step(acrobot_t *acrobot,
 //
 // `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
 // accelerations of at most 0.25 % of that of the straight acrobot that falls from horizontal. `q`
-// has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that of
-// the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the `gain`.
+// has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that
+// of the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the
+// `gain`.
 acrobot_status_t acrobot_regulator(acrobot_t *acrobot,
                                    const acrobot_state_t *target,
                                    const acrobot_state_t *q,
@@ -472,8 +474,8 @@ acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
                                       acrobot_error_t *error);
 
 // Plans until a plan ends where the regulator holds the target. `length` receives its number of
-// knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls may
-// change knots.
+// knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
+// may change knots.
 acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
                                       const acrobot_state_t *start,
                                       uint32_t tries,

@@ -54,8 +54,9 @@ pub unsafe extern "C" fn acrobot_linearize_step(
 ///
 /// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
 /// accelerations of at most 0.25 % of that of the straight acrobot that falls from horizontal. `q`
-/// has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that of
-/// the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the `gain`.
+/// has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that
+/// of the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the
+/// `gain`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_regulator(
     acrobot: *mut acrobot_t,

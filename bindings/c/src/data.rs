@@ -135,9 +135,10 @@ pub struct acrobot_params_t {
     pub coulomb1: f32,
     /// As `coulomb1`, of the elbow.
     pub coulomb2: f32,
-    /// What a geared rotor takes from the coupling of the links, kg m²; finite, and so small that the
-    /// mass matrix is positive definite. Default 0. A rotor of moment of inertia J, kg m², behind a
-    /// gear g in the elbow adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1) g J here.
+    /// What a geared rotor takes from the coupling of the links, kg m²; finite, and so small that
+    /// the mass matrix is positive definite. Default 0. A rotor of moment of inertia J, kg m²,
+    /// behind a gear g in the elbow adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1)
+    /// g J here.
     pub rotor: f32,
     /// The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
     pub dynamics: c_int,

@@ -178,8 +178,8 @@ pub unsafe extern "C" fn acrobot_planner_init(
 }
 
 /// Plans until a plan ends where the regulator holds the target. `length` receives its number of
-/// knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls may
-/// change knots.
+/// knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
+/// may change knots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_plan(
     planner: *mut acrobot_planner_t,

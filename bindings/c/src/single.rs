@@ -41,8 +41,8 @@ pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acr
     status(|| Holder::init(acrobot, TimeLimit::with_task_limit(Acrobot::new(seed))))
 }
 
-/// The task to stay upright: steps of 0.02 s, a motor of 10 N m, initial states near upright, and no
-/// end. The reward is 1 upright and 0 hanging.
+/// The task to stay upright: steps of 0.02 s, a motor of 10 N m, initial states near upright, and
+/// no end. The reward is 1 upright and 0 hanging.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init_balance(
     acrobot: *mut acrobot_t,
