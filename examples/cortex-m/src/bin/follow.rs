@@ -10,9 +10,9 @@ use cortex_m_rt::entry;
 use semihosting::{println, process};
 
 fn follow() -> Result<f32, Error> {
-    let params = Params { dt: 0.02, ..Params::DEFAULT };
+    let params = Params { dt: 0.05, ..Params::DEFAULT };
     let mut machine = Acrobot::<Fast>::with_params(42_u64, params)?; // stands for the machine
-    for tick in 0..500 {
+    for tick in 0..200 {
         let torque = PLAN.torque(tick, machine.state());
         machine.step_torque(saturate(torque, 10.0))?; // a fifth is for corrections
     }

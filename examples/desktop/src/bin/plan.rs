@@ -26,10 +26,10 @@ struct Options {
     #[arg(long, default_value_t = 8.0)]
     limit: f32,
     /// Decisions a second.
-    #[arg(long, default_value_t = 50)]
+    #[arg(long, default_value_t = 20)]
     rate: u16,
     /// The most steps of the plan.
-    #[arg(long, default_value_t = 150)]
+    #[arg(long, default_value_t = 60)]
     steps: usize,
 }
 
