@@ -381,7 +381,8 @@ acrobot_status_t acrobot_reset_with_seed(acrobot_t *acrobot,
                                          acrobot_observation_t *observation);
 
 // As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
-// rad/s; −0.1 and 0.1 by default. Both must be finite as float, and `low` at most `high`.
+// rad/s; ±0.1 by default, and ±0.05 about upright in the task to stay there. Both must be finite
+// as float, and `low` at most `high`.
 acrobot_status_t acrobot_reset_within(acrobot_t *acrobot,
                                       double low,
                                       double high,

@@ -5,8 +5,9 @@ use core::num::NonZeroU32;
 use core::ptr;
 
 use acrobot::arithmetic::Damped;
+use acrobot::numpy::SeedSequence;
 use acrobot::task::{Balance, ResetBounds, Task};
-use acrobot::{Acrobot, Action, Fast, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, ResetOptions, TimeLimit};
 
 use crate::data::{
     acrobot_draws_t, acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t,
@@ -35,6 +36,14 @@ impl Holder for acrobot_t {
 
 const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
+fn reset(
+    acrobot: &mut TimeLimit<Acrobot<Damped<Fast>, AnyTask>>,
+    seed: Option<u64>,
+) -> acrobot_observation_t {
+    let bounds = Some(acrobot.task().reset_bounds());
+    acrobot.reset_with(ResetOptions { seed: seed.map(SeedSequence::new), bounds }).into()
+}
+
 /// Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
@@ -52,8 +61,9 @@ pub unsafe extern "C" fn acrobot_init_balance(
         let mut balance = Acrobot::new(seed);
         balance.set_task(AnyTask::Balance);
         balance.set_params(Balance::PARAMS.cast())?;
-        balance.reset_with_seed(seed);
-        Holder::init(acrobot, TimeLimit::with_task_limit(balance))
+        let mut balance = TimeLimit::with_task_limit(balance);
+        reset(&mut balance, Some(seed));
+        Holder::init(acrobot, balance)
     })
 }
 
@@ -63,7 +73,7 @@ pub unsafe extern "C" fn acrobot_reset(
     acrobot: *mut acrobot_t,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(acrobot.reset().into()))
+    change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(reset(acrobot, None)))
 }
 
 /// As acrobot_reset after seeding: Gymnasium's `reset(seed=seed)`.
@@ -73,13 +83,12 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
     seed: u64,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    change(acrobot, observation, ptr::null_mut(), |acrobot| {
-        Ok(acrobot.reset_with_seed(seed).into())
-    })
+    change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(reset(acrobot, Some(seed))))
 }
 
 /// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
-/// rad/s; −0.1 and 0.1 by default. Both must be finite as float, and `low` at most `high`.
+/// rad/s; ±0.1 by default, and ±0.05 about upright in the task to stay there. Both must be finite
+/// as float, and `low` at most `high`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_within(
     acrobot: *mut acrobot_t,

@@ -14,6 +14,16 @@ pub enum AnyTask {
     Balance,
 }
 
+impl AnyTask {
+    /// The bounds of initial states: a constant of each task, so this type has none.
+    pub fn reset_bounds(self) -> ResetBounds {
+        match self {
+            Self::Gymnasium => Gymnasium::RESET_BOUNDS,
+            Self::Balance => Balance::RESET_BOUNDS,
+        }
+    }
+}
+
 impl Task for AnyTask {
     const NAME: &'static str = "any";
     const DEFAULT: Self = Self::Gymnasium;
