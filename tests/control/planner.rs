@@ -250,7 +250,7 @@ fn alone_or_in_a_lane<A: Arithmetic>(
         guesses.push(plan);
     }
     let mut alone = guesses.clone();
-    // Each begins in a state of its own.
+    // Each plan begins in another state.
     let starts: Vec<_> = (0..guesses.len())
         .map(|i| State { theta2: A::Scalar::from_f64(0.2 + 0.01 * i as f64), ..start })
         .collect();

@@ -91,7 +91,7 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, E
     })
 }
 
-/// The tries between two calls of `progress`: four of each of a search's ten lengths.
+/// The tries between two calls of `progress`: a multiple of the ten lengths of a plan.
 const PORTION: u32 = 40;
 
 /// A state, a torque and gains.

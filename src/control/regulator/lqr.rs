@@ -77,7 +77,7 @@ fn time_unit(problem: &Problem<false>) -> f64 {
         fastest = fastest.max(exponent(weight) * by);
         (power, v) = (product(&power, &problem.a), apply(&problem.a, &v));
     }
-    // A double integrator has no rate of its own.
+    // The model of a double integrator has no rate but 0.
     let between = (own.max(fastest - 480) + fastest).div_euclid(2);
     let rate = own.max(between).div_euclid(24);
     f64::from_bits(((1021 - rate).max(1) as u64) << 52)
