@@ -12,7 +12,7 @@ use crate::math::Real;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[repr(C)] // for bindings/c
+#[repr(C)] // for bindings/abi
 pub struct State<S = f64> {
     /// Angle of link 1, rad; 0 = hanging straight down, counter-clockwise positive.
     pub theta1: S,

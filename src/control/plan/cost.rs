@@ -25,7 +25,7 @@ use crate::physics::{Modeled, Params, State, plus_scaled, positions, wrap};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(C)] // for bindings/c
+#[repr(C)] // for bindings/abi
 pub struct Cost<S = f64> {
     /// Q of xᵀ Q x, for the deviation x from the target, by rows: 1/(rad² s), 1/rad² and s/rad²;
     /// symmetric and positive semidefinite.

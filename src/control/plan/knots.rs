@@ -55,7 +55,7 @@ impl<S: Real, K: AsRef<[Knot<S>]>> Plan<S, K> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(C)] // for bindings/c
+#[repr(C)] // for bindings/abi
 pub struct Knot<S> {
     /// The state before the step.
     pub state: State<S>,

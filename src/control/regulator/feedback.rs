@@ -22,7 +22,7 @@ use crate::physics::State;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(C)] // for bindings/c
+#[repr(C)] // for bindings/abi
 pub struct Feedback<S = f64> {
     /// The equilibrium.
     pub target: State<S>,

@@ -113,7 +113,7 @@ fn with_velocities(by: f64) -> Matrix {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(C)] // for bindings/c
+#[repr(C)] // for bindings/abi
 pub struct Region<S = f64> {
     /// K in u = −K x, N m per rad and per rad/s.
     pub gain: [S; 4],

@@ -1,5 +1,6 @@
-//! The functions of `include/acrobot.h`, which cbindgen writes from these files, with their
-//! comments: `cbindgen --output include/acrobot.h`. Each night CI compares.
+//! The one door: what other languages may do. C links these functions, and the npm package has them
+//! as WebAssembly. cbindgen writes `../c/include/acrobot.h` from these files, with their comments:
+//! `cbindgen --output ../c/include/acrobot.h`. Each night CI compares.
 //!
 //! All `unsafe` is here: the crate sees only valid references.
 
