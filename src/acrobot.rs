@@ -84,6 +84,16 @@ impl<A: Arithmetic, T: Task> Acrobot<A, T> {
         Ok(acrobot)
     }
 
+    /// As [`new`](Self::new), for this task with its parameters, and the errors of
+    /// [`set_params`](Self::set_params).
+    pub fn with_task(seed: impl Into<SeedSequence>, task: T) -> Result<Self, Error> {
+        let mut acrobot = Self::with_rng(Pcg64::UNSEEDED);
+        acrobot.task = task;
+        acrobot.set_params(task.params().cast())?;
+        acrobot.reset_with_seed(seed);
+        Ok(acrobot)
+    }
+
     /// Gymnasium's `reset(seed=seed)`: seeds the generator and draws an initial state from it.
     pub fn reset_with_seed(&mut self, seed: impl Into<SeedSequence>) -> T::Observation {
         self.rng = seed.into().into();
@@ -95,7 +105,7 @@ impl<A: Arithmetic, T: Task> Acrobot<A, T> {
         if let Some(seed) = options.seed {
             self.rng = seed.into();
         }
-        self.begin(options.bounds.unwrap_or(T::RESET_BOUNDS))
+        self.begin(options.bounds.unwrap_or(self.task.reset_bounds()))
     }
 }
 
@@ -124,10 +134,10 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
         Step { observation: self.observe(sin_cos), reward, terminated, truncated: false }
     }
 
-    /// Draws a new initial state from the task's [bounds](Task::RESET_BOUNDS) and returns its
+    /// Draws a new initial state from the task's [bounds](Task::reset_bounds) and returns its
     /// observation.
     pub fn reset(&mut self) -> T::Observation {
-        self.begin(T::RESET_BOUNDS)
+        self.begin(self.task.reset_bounds())
     }
 
     /// Draws parameters for the next steps from the generator: call it after a reset.
@@ -285,10 +295,10 @@ mod snapshot {
         rng: R,
     }
 
-    impl<A: Arithmetic, T: Task, R: Serialize> Serialize for Acrobot<A, T, R> {
+    impl<A: Arithmetic, T: Task + Serialize, R: Serialize> Serialize for Acrobot<A, T, R> {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
             Snapshot {
-                snapshot: Header::<A, T, false>::NEW,
+                snapshot: Header::<A, T, false>::of(self.task),
                 params: *self.params(),
                 state: self.state(),
                 rng: &self.rng,
@@ -297,13 +307,16 @@ mod snapshot {
         }
     }
 
-    impl<'de, A: Arithmetic, T: Task, R: Deserialize<'de>> Deserialize<'de> for Acrobot<A, T, R> {
+    impl<'de, A: Arithmetic, T, R: Deserialize<'de>> Deserialize<'de> for Acrobot<A, T, R>
+    where
+        T: Task + Deserialize<'de>,
+    {
         /// Rejects what `set_params` and `set_state` reject.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot::<Header<A, T, false>, _, _, _> { params, state, rng, .. } =
-                Snapshot::deserialize(deserializer)?;
+            let Snapshot { snapshot, params, state, rng } = Snapshot::deserialize(deserializer)?;
+            let Header::<A, T, false> { task, .. } = snapshot;
             let pendulum = Pendulum::new(params, state).map_err(D::Error::custom)?;
-            Ok(Self::from_pendulum(pendulum, rng))
+            Ok(Self { pendulum, rng, task })
         }
     }
 }

@@ -128,6 +128,19 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         Ok(batch)
     }
 
+    /// As [`new`](Self::new), for this task with its parameters, and the errors of
+    /// [`set_all_params`](Self::set_all_params).
+    pub fn with_task(seed: impl Into<SeedSequence>, task: T, storage: S) -> Result<Self, Error> {
+        let seed = seed.into();
+        let mut batch = Self::new(seed.clone(), storage)?;
+        let settings = &mut batch.settings;
+        (settings.task, settings.bounds) = (task, task.reset_bounds());
+        settings.max_steps = task.max_steps();
+        batch.set_all_params(task.params().cast())?;
+        batch.reset_with_seed(seed);
+        Ok(batch)
+    }
+
     /// The number of acrobots.
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "no batch is empty")]

@@ -16,63 +16,75 @@ const VERSION: u32 = 6;
 /// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile.
 const LIMIT: usize = 16;
 
-/// The first field of a snapshot of an acrobot or a batch. Zero-sized: its contents are constants,
-/// checked when loaded.
-pub(crate) struct Header<A, T, const BATCH: bool>(PhantomData<(A, T)>);
+/// The first field of a snapshot of an acrobot or a batch.
+pub(crate) struct Header<A, T, const BATCH: bool> {
+    pub(crate) task: T,
+    arithmetic: PhantomData<A>,
+}
 
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Header")]
-struct Fields<Text> {
+struct Fields<Text, T> {
     of: Text,
     version: u32,
     task: Text,
     arithmetic: Text,
+    /// The task's data; none of the crate's tasks has any.
+    data: T,
 }
 
-impl<Text: fmt::Debug> fmt::Display for Fields<Text> {
+impl<Text: fmt::Debug, T> fmt::Display for Fields<Text, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { of, version, task, arithmetic } = self;
+        let Self { of, version, task, arithmetic, .. } = self;
         write!(f, "{of:?}, version {version}, task {task:?}, arithmetic {arithmetic:?}")
     }
 }
 
 impl<A: Arithmetic, T: Task, const BATCH: bool> Header<A, T, BATCH> {
-    pub(crate) const NEW: Self = Self(PhantomData);
+    /// The largest size in postcard's format, bytes: three texts, a byte for each length, the
+    /// version, and the task's data, whose numbers may take a byte for 7 bits.
+    pub(crate) const SIZE: usize =
+        4 + Self::OF.len() + T::NAME.len() + A::NAME.len() + 2 * size_of::<T>();
 
-    /// The size in postcard's format, bytes: three texts, a byte for each length, and the version.
-    pub(crate) const SIZE: usize = 4 + Self::FIELDS.of.len() + T::NAME.len() + A::NAME.len();
-
-    const FIELDS: Fields<&'static str> = {
+    const OF: &str = {
         assert!(A::NAME.len() <= LIMIT, "an arithmetic's NAME must have at most 16 bytes");
         assert!(T::NAME.len() <= LIMIT, "a task's NAME must have at most 16 bytes");
-        assert!(size_of::<T>() == 0, "a snapshot does not hold the data of a task");
-        Fields {
-            of: if BATCH { "batch" } else { "acrobot" },
-            version: VERSION,
-            task: T::NAME,
-            arithmetic: A::NAME,
-        }
+        if BATCH { "batch" } else { "acrobot" }
     };
-}
 
-impl<A: Arithmetic, T: Task, const BATCH: bool> Serialize for Header<A, T, BATCH> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Self::FIELDS.serialize(serializer)
+    pub(crate) fn of(task: T) -> Self {
+        Self { task, arithmetic: PhantomData }
+    }
+
+    fn fields(&self) -> Fields<&'static str, T> {
+        let (of, task, arithmetic) = (Self::OF, self.task.name(), A::NAME);
+        Fields { of, version: VERSION, task, arithmetic, data: self.task }
     }
 }
 
-impl<'de, A: Arithmetic, T: Task, const BATCH: bool> Deserialize<'de> for Header<A, T, BATCH> {
+impl<A: Arithmetic, T: Task + Serialize, const BATCH: bool> Serialize for Header<A, T, BATCH> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.fields().serialize(serializer)
+    }
+}
+
+impl<'de, A: Arithmetic, T, const BATCH: bool> Deserialize<'de> for Header<A, T, BATCH>
+where
+    T: Task + Deserialize<'de>,
+{
     /// Rejects any other header.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let found: Fields<String<LIMIT>> = Fields::deserialize(deserializer).map_err(|error| {
-            D::Error::custom(format_args!(
-                "{error}; the input must be a snapshot of version {VERSION}"
-            ))
-        })?;
-        let rule = Self::FIELDS;
-        let same_names = found.task == T::NAME && found.arithmetic == A::NAME;
-        if found.of == rule.of && same_names && found.version == VERSION {
-            return Ok(Self::NEW);
+        let found: Fields<String<LIMIT>, T> =
+            Fields::deserialize(deserializer).map_err(|error| {
+                D::Error::custom(format_args!(
+                    "{error}; the input must be a snapshot of version {VERSION}"
+                ))
+            })?;
+        let rule = Self::of(T::DEFAULT).fields();
+        let named = found.data.named(&found.task);
+        let is_same = found.of == rule.of && found.arithmetic == rule.arithmetic;
+        if let Some(task) = named.filter(|_| is_same && found.version == VERSION) {
+            return Ok(Self::of(task));
         }
         let text = format_args!("the snapshot must be {rule}, got {found}");
         Err(D::Error::custom(text))

@@ -3,6 +3,7 @@
 //! A [`Task`] is a type parameter of [`Acrobot`](crate::Acrobot) and of
 //! [`Batch`](crate::batch::Batch).
 
+mod any;
 mod balance;
 mod draws;
 pub(crate) mod episode;
@@ -18,6 +19,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use rand_core::Rng;
 
+pub use any::AnyTask;
 pub use balance::Balance;
 pub use draws::{Draw, Draws};
 pub use gymnasium::{Gymnasium, GymnasiumV0};
@@ -32,8 +34,8 @@ use crate::physics::{Given, Params, State, directions, positions};
 /// What an acrobot is to do. Its functions compute for one acrobot or for many side by side, so
 /// they have no branches: [an example](crate::guide::tasks).
 pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
-    /// A short name in lower case, of at most 16 bytes. Snapshots hold it, so no other task can
-    /// load them.
+    /// A short name in lower case, of at most 16 bytes. Snapshots have it, with the task's data, so
+    /// no other task can load them.
     const NAME: &'static str;
 
     /// The task of a new acrobot, if it is not given one. A task can have data, such as a point to
@@ -58,6 +60,32 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
 
     /// What an agent sees: `[f32; N]`.
     type Observation: Observation;
+
+    /// The name of this task. This and the next four follow from the type, unless the value
+    /// decides, as in [`AnyTask`].
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    /// The task of a snapshot with this name and these data, or `None`.
+    fn named(self, name: &str) -> Option<Self> {
+        (name == Self::NAME).then_some(self)
+    }
+
+    /// The number of steps of an episode of this task.
+    fn max_steps(&self) -> NonZeroU32 {
+        Self::MAX_STEPS
+    }
+
+    /// The default bounds of initial states of this task.
+    fn reset_bounds(&self) -> ResetBounds {
+        Self::RESET_BOUNDS
+    }
+
+    /// The default parameters of this task.
+    fn params(&self) -> Params {
+        Self::PARAMS
+    }
 
     /// Draws an initial state. It is `f32` in every arithmetic.
     #[inline]

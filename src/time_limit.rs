@@ -88,10 +88,11 @@ impl<A: Arithmetic, T: Task> TimeLimit<Acrobot<A, T>> {
 }
 
 impl<A: Arithmetic, T: Task, R> TimeLimit<Acrobot<A, T, R>> {
-    /// Truncates episodes after the steps that [the task has](Task::MAX_STEPS): 500 in Gymnasium's.
+    /// Truncates episodes after the steps that [the task has](Task::max_steps): 500 in Gymnasium's.
     #[must_use]
-    pub const fn with_task_limit(inner: Acrobot<A, T, R>) -> Self {
-        Self::new(inner, T::MAX_STEPS)
+    pub fn with_task_limit(inner: Acrobot<A, T, R>) -> Self {
+        let max_steps = inner.task().max_steps();
+        Self::new(inner, max_steps)
     }
 }
 

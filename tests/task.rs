@@ -3,19 +3,20 @@
 
 use core::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Numbers, Real};
+use acrobot::arithmetic::{Arithmetic, Damped, Numbers, Real};
 use acrobot::batch::VecBatch;
 
 use acrobot::env::Env;
 use acrobot::numpy::Pcg64;
 use acrobot::physics::{Pendulum, saturate};
 use acrobot::rand_core::Rng;
-use acrobot::task::{Balance, Pose, ResetBounds, Task};
-use acrobot::{Acrobot, Action, Fast, Params, State};
+use acrobot::task::{AnyTask, Balance, Gymnasium, Pose, ResetBounds, Swingup, Task};
+use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
 use common::twins::Twins;
+use serde::de::DeserializeOwned;
 
 /// Bring the tip near a point, m, with little effort, which ends the episode.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 struct Reach {
     point: [f64; 2],
 }
@@ -138,6 +139,47 @@ fn a_task_has_data() {
     assert!(step.terminated && step.reward > 99.0, "{step:?}");
     assert!(batch.observations().iter().all(|[.., beyond]| *beyond < 0.0));
     assert_eq!(batch.step(&[Action::Zero; 20]).unwrap().terminated, [true; 20]);
+    // Snapshots have them.
+    let bytes = postcard::to_stdvec(&(&acrobot, &batch)).unwrap();
+    type Both = (Acrobot<Fast, Reach>, VecBatch<Fast, Reach>);
+    let (loaded, loaded_batch): Both = postcard::from_bytes(&bytes).unwrap();
+    assert_eq!((*loaded.task(), *loaded_batch.task()), (hanging, hanging));
+    assert!(postcard::from_bytes::<Acrobot<Fast>>(&bytes).is_err());
+}
+
+/// A constant that `AnyTask` does not forward would show here.
+#[test]
+fn a_task_chosen_at_run_time_is_the_task_itself() {
+    fn check<T: Task<Observation = [f32; 6]> + serde::Serialize + DeserializeOwned>(task: AnyTask) {
+        type Any = Acrobot<Damped<Fast>, AnyTask>;
+        let mut one = TimeLimit::with_task_limit(Acrobot::<Damped<Fast>, T>::new(7));
+        let mut any = TimeLimit::with_task_limit(Any::with_task(7, task).unwrap());
+        let mut batch = VecBatch::<Damped<Fast>, T>::new(7, 20).unwrap();
+        let mut any_batch = VecBatch::<Damped<Fast>, AnyTask>::with_task(7, task, 20).unwrap();
+        let high = T::DEFAULT.observation_high(&one.params().cast());
+        assert_eq!(task.observation_high(&any.params().cast()), high);
+        for step in 0..1010 {
+            let torque = if step % 90 < 45 { 2.0 } else { -2.0 };
+            let steps = (one.step_torque(torque), any.step_torque(torque));
+            assert_eq!(steps.0, steps.1, "{task:?}, {step}");
+            if steps.0.is_ok_and(|step| step.is_done()) {
+                assert_eq!(one.reset(), any.reset());
+            }
+            let results = batch.step(&[torque; 20]).unwrap();
+            assert_eq!(results, any_batch.step(&[torque; 20]).unwrap());
+        }
+        let bytes = postcard::to_stdvec(&(&one, &batch)).unwrap();
+        assert_eq!(bytes, postcard::to_stdvec(&(&any, &any_batch)).unwrap());
+        type Both<T> = (TimeLimit<Acrobot<Damped<Fast>, T>>, VecBatch<Damped<Fast>, T>);
+        let (loaded, loaded_batch): Both<AnyTask> = postcard::from_bytes(&bytes).unwrap();
+        assert_eq!((*loaded.task(), *loaded_batch.task()), (task, task));
+        assert!(postcard::from_bytes::<Both<T>>(&bytes).is_ok());
+    }
+    check::<Gymnasium>(AnyTask::Gymnasium);
+    check::<Swingup>(AnyTask::Swingup);
+    check::<Balance>(AnyTask::Balance);
+    // The arithmetic has no friction.
+    assert!(Acrobot::<Fast, AnyTask>::with_task(1, AnyTask::Swingup).is_err());
 }
 
 /// In a `const`, with the task's parameters. The tasks of the crate take no room.

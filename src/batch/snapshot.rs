@@ -4,7 +4,7 @@ use core::fmt;
 use core::marker::PhantomData;
 use core::num::NonZeroU32;
 
-use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, Error as _, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeSeq, Serializer};
 
 use super::Batch;
@@ -22,7 +22,10 @@ use crate::task::{Draw, Draws, ResetBounds, Task};
 
 /// The settings. The parameters that all acrobots share are those of each member.
 #[derive(serde::Serialize, serde::Deserialize)]
-#[serde(rename = "Settings", bound = "")]
+#[serde(
+    rename = "Settings",
+    bound(serialize = "T: serde::Serialize", deserialize = "T: serde::Deserialize<'de>")
+)]
 struct Settings<A: Arithmetic, T: Task> {
     snapshot: Header<A, T, true>,
     low: f64,
@@ -34,11 +37,14 @@ struct Settings<A: Arithmetic, T: Task> {
     draws: Params<Draw<A::Scalar>>,
 }
 
-impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Serialize for Batch<A, S, T, N> {
+impl<A: Arithmetic, S: Storage<A, N>, T, const N: usize> Serialize for Batch<A, S, T, N>
+where
+    T: Task + Serialize,
+{
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         let mut records = serializer.serialize_seq(Some(1 + self.len()))?;
         records.serialize_element(&Settings::<A, T> {
-            snapshot: Header::NEW,
+            snapshot: Header::of(*self.task()),
             low: self.settings.bounds.low(),
             high: self.settings.bounds.high(),
             max_steps: self.settings.max_steps,
@@ -79,6 +85,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     pub fn from_snapshot<'de, D>(storage: S, deserializer: D) -> Result<Self, D::Error>
     where
         D: Deserializer<'de>,
+        T: Deserialize<'de>,
     {
         let mut batch = Self::new(0, storage).map_err(D::Error::custom)?;
         let mut index = 0;
@@ -103,6 +110,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     fn apply(&mut self, settings: Settings<A, T>, members: usize) -> Result<(), Error> {
         check_length("members", members, self.len())?;
+        self.set_task(settings.snapshot.task);
         self.set_draws(Draws::new(settings.draws)?)?;
         self.set_reset_bounds(ResetBounds::new(settings.low, settings.high)?);
         self.set_max_steps(settings.max_steps);
@@ -112,14 +120,17 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 }
 
 #[cfg(feature = "alloc")]
-impl<A: Arithmetic, T: Task, const N: usize> Serialize for VecBatch<A, T, N> {
+impl<A: Arithmetic, T: Task + Serialize, const N: usize> Serialize for VecBatch<A, T, N> {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         (**self).serialize(serializer)
     }
 }
 
 #[cfg(feature = "alloc")]
-impl<'de, A: Arithmetic, T: Task, const N: usize> serde::Deserialize<'de> for VecBatch<A, T, N> {
+impl<'de, A: Arithmetic, T, const N: usize> Deserialize<'de> for VecBatch<A, T, N>
+where
+    T: Task + Deserialize<'de>,
+{
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut members = alloc::vec::Vec::new();
         let settings = read(deserializer, |member| {
@@ -146,14 +157,15 @@ impl<'de, A: Arithmetic, T: Task, const N: usize> serde::Deserialize<'de> for Ve
 }
 
 /// Reads a snapshot: calls `each` with the members in their order, and returns the settings.
-fn read<'de, A: Arithmetic, T: Task, D: Deserializer<'de>>(
+fn read<'de, A: Arithmetic, T: Task + Deserialize<'de>, D: Deserializer<'de>>(
     deserializer: D,
     each: impl FnMut(Member<A>) -> Result<(), Error>,
 ) -> Result<Settings<A, T>, D::Error> {
     struct Records<A, T, F>(F, PhantomData<(A, T)>);
 
-    impl<'de, A: Arithmetic, T: Task, F> Visitor<'de> for Records<A, T, F>
+    impl<'de, A: Arithmetic, T, F> Visitor<'de> for Records<A, T, F>
     where
+        T: Task + Deserialize<'de>,
         F: FnMut(Member<A>) -> Result<(), Error>,
     {
         type Value = Settings<A, T>;

@@ -82,6 +82,12 @@ impl<O: Observation> StepResults<O> {
     }
 }
 
+fn memory<A: Arithmetic, const N: usize>(len: usize) -> Result<Memory<A, N>, Error> {
+    let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
+    let generators = fill(Pcg64::UNSEEDED, len, len)?;
+    Ok(BatchMemory { blocks, generators, own: OwnParams::new(Vec::new()) })
+}
+
 impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     /// A batch of `len` acrobots, with seeds and settings as those of [`Batch::new`].
     ///
@@ -89,10 +95,13 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     ///
     /// [`Error::EmptyBatch`] for a `len` of 0, and [`Error::OutOfMemory`].
     pub fn new(seed: impl Into<SeedSequence>, len: usize) -> Result<Self, Error> {
-        let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
-        let generators = fill(Pcg64::UNSEEDED, len, len)?;
-        let memory = BatchMemory { blocks, generators, own: OwnParams::new(Vec::new()) };
-        Ok(Self { batch: Batch::new(seed, memory)?, results: StepResults::new(len)? })
+        Ok(Self { batch: Batch::new(seed, memory(len)?)?, results: StepResults::new(len)? })
+    }
+
+    /// As [`new`](Self::new), for this task: see [`Batch::with_task`].
+    pub fn with_task(seed: impl Into<SeedSequence>, task: T, len: usize) -> Result<Self, Error> {
+        let batch = Batch::with_task(seed, task, memory(len)?)?;
+        Ok(Self { batch, results: StepResults::new(len)? })
     }
 
     /// Allocates parameters for each acrobot, which [`set_params`](Batch::set_params) and

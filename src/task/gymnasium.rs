@@ -19,6 +19,7 @@ use crate::physics::Params;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gymnasium;
 
 impl Task for Gymnasium {
@@ -80,6 +81,7 @@ fn highest_velocities(params: &Params<f32>) -> [f32; 2] {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GymnasiumV0;
 
 impl Task for GymnasiumV0 {

@@ -40,8 +40,7 @@ fn reset(
     acrobot: &mut TimeLimit<Acrobot<Damped<Fast>, AnyTask>>,
     seed: Option<u64>,
 ) -> acrobot_observation_t {
-    let bounds = Some(acrobot.task().reset_bounds());
-    acrobot.reset_with(ResetOptions { seed: seed.map(SeedSequence::new), bounds }).into()
+    acrobot.reset_with(ResetOptions { seed: seed.map(SeedSequence::new), bounds: None }).into()
 }
 
 /// Default parameters, and the state of Gymnasium's `reset(seed=seed)`.

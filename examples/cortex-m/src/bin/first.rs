@@ -7,6 +7,7 @@
 use core::cell::RefCell;
 
 use acrobot::numpy::Pcg64;
+use acrobot::task::{Gymnasium, Task as _};
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 use cortex_m::Peripherals;
 use cortex_m::peripheral::syst::SystClkSource;
@@ -15,7 +16,7 @@ use critical_section::Mutex;
 use semihosting::{println, process};
 
 static ACROBOT: Mutex<RefCell<TimeLimit<Acrobot<Fast>>>> =
-    Mutex::new(RefCell::new(TimeLimit::with_task_limit(Acrobot::hanging(Pcg64::new(42)))));
+    Mutex::new(RefCell::new(TimeLimit::new(Acrobot::hanging(Pcg64::new(42)), Gymnasium::MAX_STEPS)));
 
 /// 0.2 s of the 25 MHz clock of QEMU's mps2-an386. SysTick counts to 2²⁴ at most.
 const PERIOD: u32 = 5_000_000;

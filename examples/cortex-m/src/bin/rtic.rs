@@ -14,6 +14,7 @@ mod device {
 #[rtic::app(device = crate::device, peripherals = false)]
 mod app {
     use acrobot::numpy::Pcg64;
+    use acrobot::task::{Gymnasium, Task as _};
     use acrobot::{Acrobot, Action, Fast, TimeLimit};
     use cortex_m::peripheral::SCB;
     use cortex_m::peripheral::syst::SystClkSource;
@@ -62,7 +63,7 @@ mod app {
     #[task(binds = SysTick, priority = 2, shared = [observation, action], local = [
         // The compiler makes it, seed included.
         acrobot: TimeLimit<Acrobot<Fast>> =
-            TimeLimit::with_task_limit(Acrobot::hanging(Pcg64::new(42))),
+            TimeLimit::new(Acrobot::hanging(Pcg64::new(42)), Gymnasium::MAX_STEPS),
     ])]
     fn machine(mut cx: machine::Context) {
         let action = cx.shared.action.lock(|action| *action);

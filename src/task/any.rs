@@ -1,0 +1,140 @@
+//! A task that a program chooses when it runs.
+
+use core::num::NonZeroU32;
+
+use rand_core::Rng;
+
+use super::balance::Balance;
+use super::gymnasium::Gymnasium;
+use super::reset_bounds::ResetBounds;
+use super::swingup::Swingup;
+use super::{Pose, Task};
+use crate::arithmetic::{Arithmetic, Numbers};
+use crate::physics::{Params, State};
+
+/// One of the crate's tasks, as a value: a program or another language chooses it when it runs, and
+/// contains the code of all three. It has the bits and the snapshots of the task itself.
+///
+/// ```
+/// use acrobot::arithmetic::{Damped, Fast};
+/// use acrobot::task::{AnyTask, Balance};
+/// use acrobot::{Acrobot, TimeLimit};
+///
+/// let task = AnyTask::ALL.into_iter().find(|task| task.name() == "balance").unwrap();
+/// let any = Acrobot::<Damped<Fast>, AnyTask>::with_task(42, task)?;
+/// assert_eq!(any.state(), Acrobot::<Damped<Fast>, Balance>::new(42).state());
+/// assert_eq!(TimeLimit::with_task_limit(any).max_steps().get(), 500);
+/// # use acrobot::task::Task as _;
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum AnyTask {
+    /// [`Gymnasium`].
+    #[default]
+    Gymnasium,
+    /// [`Swingup`].
+    Swingup,
+    /// [`Balance`].
+    Balance,
+}
+
+/// Computes with the task itself.
+macro_rules! with_task {
+    ($any:expr, $task:ident => $result:expr) => {
+        match $any {
+            AnyTask::Gymnasium => {
+                let $task = Gymnasium;
+                $result
+            }
+            AnyTask::Swingup => {
+                let $task = Swingup;
+                $result
+            }
+            AnyTask::Balance => {
+                let $task = Balance;
+                $result
+            }
+        }
+    };
+}
+
+impl AnyTask {
+    /// All tasks, in the order of their numbers in other languages.
+    pub const ALL: [Self; 3] = [Self::Gymnasium, Self::Swingup, Self::Balance];
+}
+
+// Each item of the trait, so that none has a constant of another task.
+impl Task for AnyTask {
+    const NAME: &'static str = Gymnasium::NAME;
+    const DEFAULT: Self = Self::Gymnasium;
+    const MAX_STEPS: NonZeroU32 = Gymnasium::MAX_STEPS;
+    const RESET_BOUNDS: ResetBounds = Gymnasium::RESET_BOUNDS;
+    const PARAMS: Params = Gymnasium::PARAMS;
+
+    type Observation = [f32; 6];
+
+    fn name(&self) -> &'static str {
+        with_task!(self, task => task.name())
+    }
+
+    fn named(self, name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|task| task.name() == name)
+    }
+
+    fn max_steps(&self) -> NonZeroU32 {
+        with_task!(self, task => task.max_steps())
+    }
+
+    fn reset_bounds(&self) -> ResetBounds {
+        with_task!(self, task => task.reset_bounds())
+    }
+
+    fn params(&self) -> Params {
+        with_task!(self, task => task.params())
+    }
+
+    fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
+        with_task!(self, task => task.draw(bounds, rng))
+    }
+
+    #[inline(always)]
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 6] {
+        with_task!(self, task => task.observe::<A, V>(pose))
+    }
+
+    fn observation_high(&self, params: &Params<f32>) -> [f32; 6] {
+        with_task!(self, task => task.observation_high(params))
+    }
+
+    #[inline(always)]
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> V::Mask {
+        with_task!(self, task => task.terminated::<A, V>(pose))
+    }
+
+    #[inline(always)]
+    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        pose: &Pose<V>,
+        params: &Params<V>,
+        torque: V,
+        terminated: V::Mask,
+    ) -> V::Single {
+        with_task!(self, task => task.reward::<A, V>(pose, params, torque, terminated))
+    }
+}
+
+/// A snapshot has the name of the task in its header, and nothing more.
+#[cfg(feature = "serde")]
+impl serde::Serialize for AnyTask {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_unit()
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for AnyTask {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        <()>::deserialize(deserializer).map(|()| Self::DEFAULT)
+    }
+}
