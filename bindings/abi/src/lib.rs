@@ -17,6 +17,8 @@ pub mod status;
 
 pub mod data;
 
+pub mod task;
+
 pub mod single;
 
 pub mod control;
@@ -27,9 +29,10 @@ pub mod action_space;
 
 pub mod batch;
 
-mod memory;
+#[cfg(any(target_pointer_width = "64", target_family = "wasm"))]
+pub mod snapshot;
 
-mod task;
+mod memory;
 
 #[cfg(target_feature = "sse")]
 mod mode;
@@ -38,6 +41,10 @@ unsafe extern "C" {
     /// Does not exist: a program links only if no branch that panics is left.
     fn acrobot_has_a_panicking_branch() -> !;
 }
+
+/// Whether there are snapshots: not on microcontrollers, where they would take 64 bytes of each
+/// acrobot.
+const SNAPSHOTS: bool = cfg!(any(target_pointer_width = "64", target_family = "wasm"));
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {

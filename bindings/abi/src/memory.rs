@@ -97,6 +97,23 @@ pub unsafe fn change<H: Holder, T>(
     })
 }
 
+/// Makes a holder's value. Writes why a number was rejected, where not null.
+pub unsafe fn init<H: Holder>(
+    holder: *mut H,
+    error: *mut acrobot_error_t,
+    make: impl FnOnce() -> Result<H::Value, Rejected>,
+) -> acrobot_status_t {
+    status(|| {
+        check(holder)?;
+        if !error.is_null() {
+            check(error)?;
+            check_apart(&[Span::new(error, 1), Span::new(holder, 1)])?;
+        }
+        let value = make().inspect_err(|rejected| rejected.explain(error))?;
+        H::init(holder, value)
+    })
+}
+
 /// Writes something about a holder's value.
 pub unsafe fn get<H: Holder, T>(
     holder: *const H,
@@ -147,6 +164,11 @@ pub fn check_apart(spans: &[Span]) -> Result<(), Rejected> {
 pub fn array<T>(start: *mut T, count: usize) -> Result<*mut [T], Rejected> {
     check(start)?;
     Ok(ptr::slice_from_raw_parts_mut(start, count))
+}
+
+/// An array of the caller that is valid whatever it contains.
+pub unsafe fn read_slice<'a, T: Copy>(start: *const T, count: usize) -> Result<&'a [T], Rejected> {
+    Ok(&*array(start.cast_mut(), count)?)
 }
 
 /// An array that the caller may omit: null and without elements then.

@@ -24,6 +24,12 @@ pub enum acrobot_status_t {
     ACROBOT_ERROR_NO_SUCH_INDEX = 9,
     /// Two arguments overlap: arrays, or a result and the acrobot or batch.
     ACROBOT_ERROR_OVERLAP = 10,
+    /// A snapshot has another checksum.
+    ACROBOT_ERROR_DAMAGED_SNAPSHOT = 11,
+    /// A snapshot is of another type, version or arithmetic, or contains what a setter rejects.
+    ACROBOT_ERROR_OTHER_SNAPSHOT = 12,
+    /// The batch has no memory for parameters of each acrobot.
+    ACROBOT_ERROR_SHARED_PARAMS = 13,
 }
 
 use acrobot_status_t::*;
@@ -82,6 +88,7 @@ impl From<Error> for Rejected {
     fn from(error: Error) -> Self {
         match error {
             Error::OutOfRange { name, value, unit, rule } => Self::number(name, value, unit, rule),
+            Error::SharedParams => ACROBOT_ERROR_SHARED_PARAMS.into(),
             Error::UnknownAction(_) => ACROBOT_ERROR_UNKNOWN_ACTION.into(),
             Error::NoSuchIndex { .. } => ACROBOT_ERROR_NO_SUCH_INDEX.into(),
             Error::EmptyBatch | Error::WrongLength { .. } => ACROBOT_ERROR_WRONG_COUNT.into(),
@@ -137,6 +144,9 @@ pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
         8 => c"the count is 0 or not that of the batch",
         9 => c"there is no acrobot with this index",
         10 => c"two arguments overlap",
+        11 => c"the snapshot is damaged",
+        12 => c"the snapshot is of another type, version or arithmetic",
+        13 => c"the batch has no own parameters",
         _ => c"unknown status",
     };
     text.as_ptr()

@@ -27,12 +27,33 @@
 #endif
 #endif
 
-// Bytes of a batch of `count` acrobots, as a constant of type size_t.
-#if UINTPTR_MAX > 0xFFFFFFFF
-#define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * 48 + ((size_t)(count) + 15) / 16 * 640)
+#if UINTPTR_MAX > 0xFFFFFFFF || defined(__wasm__)
+// There are snapshots.
+#define ACROBOT_HAS_SNAPSHOTS
+// Bytes of an acrobot_t, and of an acrobot_action_space_t.
+#define ACROBOT_SIZE 304
+#define ACROBOT_ACTION_SPACE_SIZE 96
+#define ACROBOT_GENERATOR 80
 #else
-#define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * (48 + 64))
+// A microcontroller has no snapshots, and smaller acrobots.
+#define ACROBOT_SIZE 240
+#define ACROBOT_ACTION_SPACE_SIZE 48
+#define ACROBOT_GENERATOR 40
 #endif
+
+// Bytes of a batch of `count` acrobots, and of one with own parameters, as constants of size_t.
+#ifdef __wasm__
+#define ACROBOT_BATCH_SIZE(count) ACROBOT_BATCH_OF(count, 4, 192)
+#define ACROBOT_BATCH_OWN_SIZE(count) ACROBOT_BATCH_OF(count, 4, 192 + 576)
+#elif UINTPTR_MAX > 0xFFFFFFFF
+#define ACROBOT_BATCH_SIZE(count) ACROBOT_BATCH_OF(count, 16, 640)
+#define ACROBOT_BATCH_OWN_SIZE(count) ACROBOT_BATCH_OF(count, 16, 640 + 2240)
+#else
+#define ACROBOT_BATCH_SIZE(count) ACROBOT_BATCH_OF(count, 1, 64)
+#define ACROBOT_BATCH_OWN_SIZE(count) ACROBOT_BATCH_OF(count, 1, 64 + 192)
+#endif
+#define ACROBOT_BATCH_OF(count, lanes, block) \
+  (704 + (size_t)(count) * ACROBOT_GENERATOR + ((size_t)(count) + lanes - 1) / lanes * (block))
 
 // cbindgen writes the rest, and its comments, from the library's source.
 
@@ -64,8 +85,17 @@
 // standard deviation above 0.
 #define ACROBOT_DRAW_NORMAL 3
 
-// Bytes of an acrobot_t.
-#define ACROBOT_SIZE 272
+// Gymnasium's `Acrobot-v1`: swing the tip above a height.
+#define ACROBOT_TASK_GYMNASIUM 0
+
+// dm_control's `acrobot-swingup`, with friction: from rest anywhere to upright within 1,000 steps
+// of 0.01 s. The reward is from 0 to 1. The observation has the sines of both links' angles from
+// upright, their cosines, and the velocities.
+#define ACROBOT_TASK_SWINGUP 1
+
+// Stay upright for 500 steps of 0.02 s with a motor of 10 N m, from within ±0.05 of upright. The
+// reward is 1 upright and 0 hanging.
+#define ACROBOT_TASK_BALANCE 2
 
 // Its alignment. malloc may align less, on microcontrollers to 8 bytes.
 #define ACROBOT_ALIGN 16
@@ -75,9 +105,6 @@
 
 // Bytes of an acrobot_swing_up_t.
 #define ACROBOT_SWING_UP_SIZE 496
-
-// Bytes of an acrobot_action_space_t.
-#define ACROBOT_ACTION_SPACE_SIZE 64
 
 // Alignment of a batch's memory.
 #define ACROBOT_BATCH_ALIGN 64
@@ -92,6 +119,11 @@
 
 // The acrobots step on until acrobot_batch_reset_masked or another reset.
 #define ACROBOT_AUTORESET_DISABLED 2
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Bytes of a snapshot of an acrobot, at most.
+#define ACROBOT_SNAPSHOT_SIZE 208
+#endif
 
 typedef enum {
   ACROBOT_OK = 0,
@@ -112,6 +144,12 @@ typedef enum {
   ACROBOT_ERROR_NO_SUCH_INDEX = 9,
   // Two arguments overlap: arrays, or a result and the acrobot or batch.
   ACROBOT_ERROR_OVERLAP = 10,
+  // A snapshot has another checksum.
+  ACROBOT_ERROR_DAMAGED_SNAPSHOT = 11,
+  // A snapshot is of another type, version or arithmetic, or contains what a setter rejects.
+  ACROBOT_ERROR_OTHER_SNAPSHOT = 12,
+  // The batch has no memory for parameters of each acrobot.
+  ACROBOT_ERROR_SHARED_PARAMS = 13,
 } acrobot_status_t;
 
 // Acrobots in the memory of acrobot_batch_init. It contains pointers into this memory, so do not
@@ -122,17 +160,6 @@ typedef struct acrobot_batch_t acrobot_batch_t;
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_SIZE];
 } acrobot_t;
-
-// Cosine and sine of each angle of the acrobot_state_t, and its angular velocities, rad/s; six
-// floats without padding.
-typedef struct {
-  float cos_theta1;
-  float sin_theta1;
-  float cos_theta2;
-  float sin_theta2;
-  float dtheta1;
-  float dtheta2;
-} acrobot_observation_t;
 
 // Why a number is out of range, as UTF-8:
 // `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
@@ -145,6 +172,27 @@ typedef struct {
   // `"finite and above 0 s"`
   char rule[64];
 } acrobot_error_t;
+
+// Cosine and sine of each angle of the acrobot_state_t, and its angular velocities, rad/s; six
+// floats without padding.
+typedef struct {
+  float cos_theta1;
+  float sin_theta1;
+  float cos_theta2;
+  float sin_theta2;
+  float dtheta1;
+  float dtheta2;
+} acrobot_observation_t;
+
+// What a reset may choose. Zeros: the random numbers continue, within the task's bounds.
+typedef struct {
+  // A seed of any size: its words of 32 bits, the lowest first. Null: none.
+  const uint32_t *seed;
+  size_t seed_words;
+  // The lowest and the highest number of an initial state, rad and rad/s, about upright in a
+  // task that begins there. Both are finite as float. Null: those of the task.
+  const double *bounds;
+} acrobot_reset_options_t;
 
 typedef struct {
   // The observation of the new state.
@@ -346,7 +394,7 @@ typedef struct ACROBOT_ALIGNED(16) {
 
 // Where acrobot_batch_step writes.
 typedef struct {
-  // −1, or 0 if the acrobot terminated or was only reset.
+  // As in acrobot_step_t; 0 if the acrobot was only reset.
   float *rewards;
   // As in acrobot_step_t.
   bool *terminated;
@@ -358,6 +406,20 @@ typedef struct {
   acrobot_observation_t *final_observations;
 } acrobot_batch_results_t;
 
+// What all acrobots of a batch share.
+typedef struct {
+  // The number of acrobots, above 0.
+  size_t count;
+  // An ACROBOT_TASK.
+  int task;
+  // Whether each acrobot has its own parameters.
+  bool own_params;
+  // When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
+  int autoreset;
+  // Episodes are truncated after so many steps.
+  uint32_t max_steps;
+} acrobot_batch_settings_t;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -365,12 +427,14 @@ extern "C" {
 // The text of any status. It is constant: do not free it.
 const char *acrobot_status_text(int status);
 
-// Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
+// Gymnasium's `Acrobot-v1` in the state of `reset(seed=seed)`.
 acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
 
-// The task to stay upright: steps of 0.02 s, a motor of 10 N m, initial states near upright, and
-// no end. The reward is 1 upright and 0 hanging.
-acrobot_status_t acrobot_init_balance(acrobot_t *acrobot, uint64_t seed);
+// As acrobot_init, for an ACROBOT_TASK with its parameters and its limit of steps.
+acrobot_status_t acrobot_init_task(acrobot_t *acrobot,
+                                   int task,
+                                   uint64_t seed,
+                                   acrobot_error_t *error);
 
 // Begins an episode in a drawn initial state.
 acrobot_status_t acrobot_reset(acrobot_t *acrobot, acrobot_observation_t *observation);
@@ -380,14 +444,11 @@ acrobot_status_t acrobot_reset_with_seed(acrobot_t *acrobot,
                                          uint64_t seed,
                                          acrobot_observation_t *observation);
 
-// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
-// rad/s; ±0.1 by default, and ±0.05 about upright in the task to stay there. Both must be finite
-// as float, and `low` at most `high`.
-acrobot_status_t acrobot_reset_within(acrobot_t *acrobot,
-                                      double low,
-                                      double high,
-                                      acrobot_observation_t *observation,
-                                      acrobot_error_t *error);
+// As acrobot_reset, with a seed of any size, or bounds of the initial state.
+acrobot_status_t acrobot_reset_with(acrobot_t *acrobot,
+                                    const acrobot_reset_options_t *options,
+                                    acrobot_observation_t *observation,
+                                    acrobot_error_t *error);
 
 // Applies the torque of an ACROBOT_ACTION for one dt. After the end of an episode call
 // acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
@@ -404,7 +465,13 @@ acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t
 // Steps since the last reset.
 acrobot_status_t acrobot_elapsed_steps(const acrobot_t *acrobot, uint32_t *steps);
 
-// Episodes are truncated after so many steps, above 0; 500 by default.
+// Its ACROBOT_TASK.
+acrobot_status_t acrobot_task(const acrobot_t *acrobot, int *task);
+
+// Episodes are truncated after so many steps.
+acrobot_status_t acrobot_max_steps(const acrobot_t *acrobot, uint32_t *max_steps);
+
+// Sets the limit of steps, above 0.
 acrobot_status_t acrobot_set_max_steps(acrobot_t *acrobot,
                                        uint32_t max_steps,
                                        acrobot_error_t *error);
@@ -533,15 +600,18 @@ acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space,
 // Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
 acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_space, uint8_t *action);
 
-// ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
-size_t acrobot_batch_size(size_t count);
+// ACROBOT_BATCH_SIZE(count), or with `own_params` ACROBOT_BATCH_OWN_SIZE(count), but at most
+// SIZE_MAX.
+size_t acrobot_batch_size(size_t count, bool own_params);
 
-// Makes a batch in `memory`, which has `size` bytes, with default parameters, in initial states.
-// Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`. `batch` receives the
-// batch's address.
+// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's parameters,
+// in initial states. Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`.
+// `batch` receives the batch's address. With `own_params` acrobots can have different parameters.
 acrobot_status_t acrobot_batch_init(void *memory,
                                     size_t size,
                                     size_t count,
+                                    int task,
+                                    bool own_params,
                                     uint64_t seed,
                                     acrobot_batch_t **batch);
 
@@ -552,25 +622,39 @@ acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch,
                                     const acrobot_batch_results_t *results,
                                     size_t count);
 
+// As acrobot_batch_step, with any finite torques, N m.
+acrobot_status_t acrobot_batch_step_torque(acrobot_batch_t *batch,
+                                           const float *torques,
+                                           const acrobot_batch_results_t *results,
+                                           size_t count);
+
 acrobot_status_t acrobot_batch_observe(const acrobot_batch_t *batch,
                                        acrobot_observation_t *observations,
                                        size_t count);
 
-acrobot_status_t acrobot_batch_count(const acrobot_batch_t *batch, size_t *count);
+acrobot_status_t acrobot_batch_settings(const acrobot_batch_t *batch,
+                                        acrobot_batch_settings_t *settings);
 
 // As acrobot_reset, for each acrobot.
 acrobot_status_t acrobot_batch_reset(acrobot_batch_t *batch);
 
-// As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
-acrobot_status_t acrobot_batch_reset_with_seed(acrobot_batch_t *batch, uint64_t seed);
+// As acrobot_reset_with, for each acrobot, seeded as acrobot_batch_init does.
+acrobot_status_t acrobot_batch_reset_with(acrobot_batch_t *batch,
+                                          const acrobot_reset_options_t *options,
+                                          acrobot_error_t *error);
 
 // As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.
 acrobot_status_t acrobot_batch_reset_with_seeds(acrobot_batch_t *batch,
                                                 const uint64_t *seeds,
                                                 size_t count);
 
-// As acrobot_batch_reset, where `mask` is true. A byte that is neither true nor false is rejected.
-acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch, const bool *mask, size_t count);
+// As acrobot_batch_reset_with, where `mask` is true. A byte that is neither true nor false is
+// rejected.
+acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch,
+                                            const bool *mask,
+                                            size_t count,
+                                            const acrobot_reset_options_t *options,
+                                            acrobot_error_t *error);
 
 // When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
 acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
@@ -592,12 +676,78 @@ acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
                                          const acrobot_state_t *state,
                                          acrobot_error_t *error);
 
-acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch, acrobot_params_t *params);
+// The steps of an acrobot since its last reset.
+acrobot_status_t acrobot_batch_elapsed_steps(const acrobot_batch_t *batch,
+                                             size_t index,
+                                             uint32_t *steps);
 
-// As acrobot_set_params, for all acrobots.
+// Whether the episode of an acrobot has ended and it waits for a reset.
+acrobot_status_t acrobot_batch_is_done(const acrobot_batch_t *batch, size_t index, bool *is_done);
+
+acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch,
+                                      size_t index,
+                                      acrobot_params_t *params);
+
+// As acrobot_set_params, for one acrobot of a batch with own parameters.
 acrobot_status_t acrobot_batch_set_params(acrobot_batch_t *batch,
+                                          size_t index,
                                           const acrobot_params_t *params,
                                           acrobot_error_t *error);
+
+// As acrobot_set_params, for all acrobots.
+acrobot_status_t acrobot_batch_set_all_params(acrobot_batch_t *batch,
+                                              const acrobot_params_t *params,
+                                              acrobot_error_t *error);
+
+// From now on each reset of a batch with own parameters draws them, after the initial state and
+// from the same random numbers. Zeros end it.
+acrobot_status_t acrobot_batch_set_draws(acrobot_batch_t *batch,
+                                         const acrobot_draws_t *draws,
+                                         acrobot_error_t *error);
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Writes a snapshot into `bytes`, which has `size` bytes: ACROBOT_SNAPSHOT_SIZE is enough. An
+// acrobot that loads it continues with the same bits, in any language.
+acrobot_status_t acrobot_save(const acrobot_t *acrobot,
+                              uint8_t *bytes,
+                              size_t size,
+                              size_t *length);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Makes an acrobot of a snapshot.
+acrobot_status_t acrobot_load(acrobot_t *acrobot, const uint8_t *bytes, size_t length);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Bytes of a snapshot of a batch of `count` acrobots, at most.
+size_t acrobot_batch_snapshot_size(size_t count);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// As acrobot_save, for a batch.
+acrobot_status_t acrobot_batch_save(const acrobot_batch_t *batch,
+                                    uint8_t *bytes,
+                                    size_t size,
+                                    size_t *length);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// The settings of a batch's snapshot. acrobot_batch_size of its `count` and `own_params` is the
+// memory that acrobot_batch_load needs.
+acrobot_status_t acrobot_batch_saved_settings(const uint8_t *bytes,
+                                              size_t length,
+                                              acrobot_batch_settings_t *saved);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Makes a batch of a snapshot in `memory`, which has `size` bytes. `batch` receives its address.
+acrobot_status_t acrobot_batch_load(void *memory,
+                                    size_t size,
+                                    const uint8_t *bytes,
+                                    size_t length,
+                                    acrobot_batch_t **batch);
+#endif
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -86,7 +86,7 @@ static uint64_t balance(void)
         acrobot_t acrobot;
         acrobot_state_t state;
         acrobot_step_t step;
-        ACCEPTED(acrobot_init_balance(&acrobot, 0));
+        ACCEPTED(acrobot_init_task(&acrobot, ACROBOT_TASK_BALANCE, 0, NULL));
         ACCEPTED(acrobot_state(&acrobot, &state));
         // That of Rust's `Acrobot::<Fast, Balance>::new(0)`.
         CHECK(state.theta1 == 3.155289f && state.theta2 == -.02302133f);
@@ -123,12 +123,13 @@ static uint64_t batch_of_twenty(bool tiny)
     uint64_t digest = OFFSET;
     __builtin_memset(rows, 0, sizeof rows);
     __builtin_memset(finals, 0, sizeof finals);
-    ACCEPTED(acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch));
+    ACCEPTED(acrobot_batch_init(
+        memory, sizeof memory, COUNT, ACROBOT_TASK_GYMNASIUM, false, 42, &batch));
     if (tiny) {
-        ACCEPTED(acrobot_batch_params(batch, &params));
+        ACCEPTED(acrobot_batch_params(batch, 0, &params));
         params.torques[0] = (float)(-(double)FLT_MIN / 100);
         params.torques[2] = (float)((double)FLT_MIN / 100);
-        ACCEPTED(acrobot_batch_set_params(batch, &params, NULL));
+        ACCEPTED(acrobot_batch_set_all_params(batch, &params, NULL));
     }
     for (int i = 0; i < COUNT && tiny; i++) {
         ACCEPTED(acrobot_batch_set_state(batch, (size_t)i, &HANGING, NULL));

@@ -15,6 +15,8 @@ static const acrobot_state_t ONES = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
 static acrobot_knot_t knots[COUNT];
 static const bool MASK[COUNT] = {true, false, true};
 static const uint64_t SEEDS[COUNT] = {7, 8, 9};
+static const double BOUNDS[] = {-1, 1, -1};
+static const acrobot_reset_options_t WIDE = {NULL, 0, BOUNDS}, SWAPPED = {NULL, 0, BOUNDS + 1};
 
 typedef acrobot_observation_t row_t;
 typedef row_t rows_t[COUNT];
@@ -31,7 +33,7 @@ static acrobot_status_t step_batch(acrobot_batch_t *batch, void *rewards)
 // What holds the value that a function uses.
 enum { ALONE, ACTIONS, BATCH, PLANNER, SWING_UP, HOLDERS };
 static const size_t SIZES[] = {
-    ACROBOT_SIZE, ACROBOT_ACTION_SPACE_SIZE, ACROBOT_BATCH_SIZE(COUNT), ACROBOT_PLANNER_SIZE,
+    ACROBOT_SIZE, ACROBOT_ACTION_SPACE_SIZE, ACROBOT_BATCH_OWN_SIZE(COUNT), ACROBOT_PLANNER_SIZE,
     ACROBOT_SWING_UP_SIZE,
 };
 enum { NEEDED, OPTIONAL, NONE };
@@ -46,14 +48,16 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
 #define CALLS \
     RESET(acrobot_reset(acrobot, out)) \
     RESET(acrobot_reset_with_seed(acrobot, 7, out)) \
-    RESET(acrobot_reset_within(acrobot, -1, 1, out, NULL)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, OK, acrobot_reset_within(acrobot, -1, 1, NULL, out)) \
-    ERROR(ALONE, acrobot_reset_within(acrobot, 1, -1, NULL, out)) \
+    RESET(acrobot_reset_with(acrobot, &WIDE, out, NULL)) \
+    CALL(ALONE, acrobot_error_t, OPTIONAL, OK, acrobot_reset_with(acrobot, NULL, NULL, out)) \
+    ERROR(ALONE, acrobot_reset_with(acrobot, &SWAPPED, NULL, out)) \
     RESULT(ALONE, acrobot_step_t, acrobot_step(acrobot, 2, out)) \
     RESULT(ALONE, acrobot_step_t, acrobot_step_torque(acrobot, 1, out, NULL)) \
     ERROR(ALONE, acrobot_step_torque(acrobot, INF, &step, out)) \
     RESULT(ALONE, row_t, acrobot_observe(acrobot, out)) \
     RESULT(ALONE, uint32_t, acrobot_elapsed_steps(acrobot, out)) \
+    RESULT(ALONE, uint32_t, acrobot_max_steps(acrobot, out)) \
+    RESULT(ALONE, int, acrobot_task(acrobot, out)) \
     ERROR(ALONE, acrobot_set_max_steps(acrobot, 0, out)) \
     RESULT(ALONE, acrobot_state_t, acrobot_state(acrobot, out)) \
     ERROR(ALONE, acrobot_set_state(acrobot, &FAR, out)) \
@@ -69,18 +73,24 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     ERROR(ALONE, acrobot_regulator(acrobot, &FAR, &ONES, 1, &x, out)) \
     RESULT(ACTIONS, uint8_t, acrobot_action_space_sample(action_space, out)) \
     BEGIN(acrobot_batch_reset(batch)) \
-    BEGIN(acrobot_batch_reset_with_seed(batch, 42)) \
-    BEGIN(acrobot_batch_reset_masked(batch, MASK, COUNT)) \
+    BEGIN(acrobot_batch_reset_with(batch, &WIDE, NULL)) \
+    ERROR(BATCH, acrobot_batch_reset_with(batch, &SWAPPED, out)) \
+    BEGIN(acrobot_batch_reset_masked(batch, MASK, COUNT, NULL, NULL)) \
+    ERROR(BATCH, acrobot_batch_reset_masked(batch, MASK, COUNT, &SWAPPED, out)) \
     BEGIN(acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT)) \
     RESULT(BATCH, rewards_t, step_batch(batch, out)) \
     RESULT(BATCH, rows_t, acrobot_batch_observe(batch, (row_t *)out, COUNT)) \
-    RESULT(BATCH, size_t, acrobot_batch_count(batch, out)) \
+    RESULT(BATCH, acrobot_batch_settings_t, acrobot_batch_settings(batch, out)) \
+    RESULT(BATCH, uint32_t, acrobot_batch_elapsed_steps(batch, 0, out)) \
+    RESULT(BATCH, bool, acrobot_batch_is_done(batch, 0, out)) \
+    ERROR(BATCH, acrobot_batch_set_draws(batch, &reversed, out)) \
     ERROR(BATCH, acrobot_batch_set_autoreset(batch, 3, out)) \
     ERROR(BATCH, acrobot_batch_set_max_steps(batch, 0, out)) \
     RESULT(BATCH, acrobot_state_t, acrobot_batch_state(batch, 0, out)) \
     ERROR(BATCH, acrobot_batch_set_state(batch, 0, &FAR, out)) \
-    RESULT(BATCH, acrobot_params_t, acrobot_batch_params(batch, out)) \
-    ERROR(BATCH, acrobot_batch_set_params(batch, &NO_MASS, out)) \
+    RESULT(BATCH, acrobot_params_t, acrobot_batch_params(batch, 0, out)) \
+    ERROR(BATCH, acrobot_batch_set_all_params(batch, &NO_MASS, out)) \
+    ERROR(BATCH, acrobot_batch_set_params(batch, 0, &NO_MASS, out)) \
     RESULT(PLANNER, size_t, acrobot_planner_plan(planner, &UP, 1, 4, knots, COUNT, out, NULL)) \
     ERROR(PLANNER, acrobot_planner_plan(planner, &FAR, 1, 4, knots, COUNT, &length, out)) \
     RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, COUNT, out, NULL)) \
@@ -138,7 +148,7 @@ static void expect(int index, void *holder, void *out, int status)
 }
 
 #define MARGIN 192
-#define SIZE ACROBOT_BATCH_SIZE(COUNT)
+#define SIZE ACROBOT_BATCH_OWN_SIZE(COUNT)
 // The most that a holder has.
 #define MOST (SIZE > ACROBOT_PLANNER_SIZE ? SIZE : ACROBOT_PLANNER_SIZE)
 ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t arena[MARGIN + MOST + MARGIN];
@@ -158,7 +168,7 @@ static void *hold(int holder)
                  ? acrobot_planner_init((acrobot_planner_t *)memory, &problem, NULL)
              : holder == SWING_UP
                  ? acrobot_swing_up_init((acrobot_swing_up_t *)memory, &PARAMS, 1, NULL)
-                 : acrobot_batch_init(memory, SIZE, COUNT, 42, &batch));
+                 : acrobot_batch_init(memory, SIZE, COUNT, 0, true, 42, &batch));
     __builtin_memcpy(saved, held, MOST);
     return memory;
 }
@@ -238,7 +248,8 @@ static void expect_message(acrobot_status_t status, const char *message)
     expect_message(acrobot_step_torque(acrobot, torque, &step, &error), message);
 #define bounds_rejects(message, set) \
     set; \
-    expect_message(acrobot_reset_within(acrobot, bounds.low, bounds.high, NULL, &error), message);
+    options.bounds = &bounds.low; \
+    expect_message(acrobot_reset_with(acrobot, &options, NULL, &error), message);
 #define draw_rejects(message, kind, mean, std, low, high) \
     { \
         const acrobot_draw_t draw = {ACROBOT_DRAW_##kind, low, high, mean, std}; \
@@ -256,6 +267,7 @@ static void arguments_of_an_acrobot(void)
     acrobot_state_t state, x;
     acrobot_params_t params = PARAMS;
     static acrobot_draws_t draws;
+    acrobot_reset_options_t options = {NULL, 0, NULL};
     struct {
         double low, high;
     } bounds;
@@ -339,21 +351,23 @@ static void a_new_batch(void)
 {
     acrobot_batch_t *batch;
     for (size_t count = 1; count < 100; count++) {
-        CHECK(acrobot_batch_size(count) == ACROBOT_BATCH_SIZE(count));
+        CHECK(acrobot_batch_size(count, false) == ACROBOT_BATCH_SIZE(count));
+        CHECK(acrobot_batch_size(count, true) == ACROBOT_BATCH_OWN_SIZE(count));
     }
     // Too many for the products to be ints.
-    CHECK(acrobot_batch_size(30000000) == ACROBOT_BATCH_SIZE(30000000));
-    CHECK(acrobot_batch_size(SIZE_MAX) == SIZE_MAX);
+    CHECK(acrobot_batch_size(30000000, false) == ACROBOT_BATCH_SIZE(30000000));
+    CHECK(acrobot_batch_size(SIZE_MAX, true) == SIZE_MAX);
     hold(BATCH);
-    REJECTED(NULL, acrobot_batch_init(NULL, SIZE, COUNT, 42, &batch));
-    REJECTED(NULL, acrobot_batch_init(held, SIZE, COUNT, 42, NULL));
-    REJECTED(MISALIGNED, acrobot_batch_init(held + 32, SIZE, 1, 42, &batch));
-    REJECTED(BUFFER_TOO_SMALL, acrobot_batch_init(held, SIZE - 1, COUNT, 42, &batch));
-    REJECTED(BUFFER_TOO_SMALL, acrobot_batch_init(held, SIZE, SIZE_MAX, 42, &batch));
-    REJECTED(WRONG_COUNT, acrobot_batch_init(held, SIZE, 0, 42, &batch));
+    REJECTED(OUT_OF_RANGE, acrobot_batch_init(held, SIZE, COUNT, 3, true, 42, &batch));
+    REJECTED(NULL, acrobot_batch_init(NULL, SIZE, COUNT, 0, true, 42, &batch));
+    REJECTED(NULL, acrobot_batch_init(held, SIZE, COUNT, 0, true, 42, NULL));
+    REJECTED(MISALIGNED, acrobot_batch_init(held + 32, SIZE, 1, 0, true, 42, &batch));
+    REJECTED(BUFFER_TOO_SMALL, acrobot_batch_init(held, SIZE - 1, COUNT, 0, true, 42, &batch));
+    REJECTED(BUFFER_TOO_SMALL, acrobot_batch_init(held, SIZE, SIZE_MAX, 0, true, 42, &batch));
+    REJECTED(WRONG_COUNT, acrobot_batch_init(held, SIZE, 0, 0, true, 42, &batch));
     for (size_t at = MARGIN; at < MARGIN + SIZE; at += sizeof batch) {
         acrobot_batch_t **out = (acrobot_batch_t **)(void *)(arena + at);
-        REJECTED(OVERLAP, acrobot_batch_init(held, SIZE, COUNT, 42, out));
+        REJECTED(OVERLAP, acrobot_batch_init(held, SIZE, COUNT, 0, true, 42, out));
     }
     CHECK(same(held, saved, SIZE));
 }
@@ -385,11 +399,11 @@ static void arguments_of_a_batch(void)
     REJECTED(OVERLAP, acrobot_batch_step(batch, actions, &results, COUNT));
     CHECK(results.rewards == rewards);
     REJECTED(WRONG_COUNT, acrobot_batch_observe(batch, rows, COUNT + 1));
-    REJECTED(NULL, acrobot_batch_reset_masked(batch, NULL, COUNT));
-    REJECTED(WRONG_COUNT, acrobot_batch_reset_masked(batch, mask, COUNT - 1));
-    REJECTED(OVERLAP, acrobot_batch_reset_masked(batch, (const bool *)held, COUNT));
+    REJECTED(NULL, acrobot_batch_reset_masked(batch, NULL, COUNT, NULL, NULL));
+    REJECTED(WRONG_COUNT, acrobot_batch_reset_masked(batch, mask, COUNT - 1, NULL, NULL));
+    REJECTED(OVERLAP, acrobot_batch_reset_masked(batch, (const bool *)held, COUNT, NULL, NULL));
     __builtin_memcpy(&mask[2], &odd, 1);
-    REJECTED(OUT_OF_RANGE, acrobot_batch_reset_masked(batch, mask, COUNT));
+    REJECTED(OUT_OF_RANGE, acrobot_batch_reset_masked(batch, mask, COUNT, NULL, NULL));
     REJECTED(NULL, acrobot_batch_reset_with_seeds(batch, NULL, COUNT));
     REJECTED(WRONG_COUNT, acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT + 1));
     REJECTED(OVERLAP, acrobot_batch_reset_with_seeds(batch, (const uint64_t *)(void *)held, COUNT));
@@ -397,9 +411,11 @@ static void arguments_of_a_batch(void)
     REJECTED(NO_SUCH_INDEX, acrobot_batch_state(batch, COUNT, &state));
     REJECTED(NO_SUCH_INDEX, acrobot_batch_set_state(batch, COUNT, &REST, NULL));
     REJECTED(NULL, acrobot_batch_set_state(batch, 0, NULL, NULL));
-    REJECTED(NULL, acrobot_batch_set_params(batch, NULL, NULL));
+    REJECTED(NULL, acrobot_batch_set_all_params(batch, NULL, NULL));
+    REJECTED(NO_SUCH_INDEX, acrobot_batch_params(batch, COUNT, &params));
+    REJECTED(NO_SUCH_INDEX, acrobot_batch_set_params(batch, COUNT, &params, NULL));
     params.damping2 = 1;
-    expect_message(acrobot_batch_set_params(batch, &params, &error),
+    expect_message(acrobot_batch_set_all_params(batch, &params, &error),
                    "damping2 must be 0 unless the arithmetic is Damped, in N m s/rad, got ");
     CHECK(same(batch, saved, SIZE));
 }

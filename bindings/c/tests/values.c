@@ -24,6 +24,8 @@ static void an_acrobot(void)
     acrobot_step_t step, twin_step;
     float number;
     uint32_t steps;
+    static const double bounds[] = {.5, .5};
+    const acrobot_reset_options_t options = {NULL, 0, bounds};
     ACCEPTED(acrobot_init(&acrobot, 42));
     ACCEPTED(acrobot_set_state(&acrobot, &HANGING, NULL));
     // −m1 g lc1 − m2 g (l1 + lc2), with the default parameters.
@@ -44,7 +46,7 @@ static void an_acrobot(void)
     ACCEPTED(acrobot_step_torque(&twin, PARAMS.torques[1], &twin_step, NULL));
     CHECK(same(&step.observation, &twin_step.observation, sizeof step.observation));
 
-    ACCEPTED(acrobot_reset_within(&acrobot, .5, .5, NULL, NULL));
+    ACCEPTED(acrobot_reset_with(&acrobot, &options, NULL, NULL));
     ACCEPTED(acrobot_state(&acrobot, &state));
     CHECK(state.theta1 == .5f && state.dtheta2 == .5f);
     ACCEPTED(acrobot_elapsed_steps(&acrobot, &steps));
@@ -56,7 +58,7 @@ static void an_acrobot(void)
     }
 }
 
-// Its second acrobot does what one alone does. It has no friction.
+// Its second acrobot does what one alone does.
 static void a_batch(void)
 {
     ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_SIZE(COUNT)];
@@ -72,17 +74,19 @@ static void a_batch(void)
     acrobot_state_t state;
     acrobot_params_t params = PARAMS, set;
     acrobot_step_t step;
-    size_t count;
-    ACCEPTED(acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch));
-    ACCEPTED(acrobot_batch_count(batch, &count));
-    CHECK(count == COUNT);
+    acrobot_batch_settings_t settings;
+    static const uint32_t seed[] = {42};
+    const acrobot_reset_options_t options = {seed, 1, NULL};
+    ACCEPTED(acrobot_batch_init(
+        memory, sizeof memory, COUNT, ACROBOT_TASK_GYMNASIUM, false, 42, &batch));
+    ACCEPTED(acrobot_batch_settings(batch, &settings));
+    CHECK(settings.count == COUNT && settings.max_steps == 500 && !settings.own_params);
     ACCEPTED(acrobot_batch_observe(batch, first, COUNT));
     ACCEPTED(acrobot_batch_set_state(batch, 1, &MOVING, NULL));
     ACCEPTED(acrobot_batch_state(batch, 1, &state));
     CHECK(same(&state, &MOVING, sizeof state));
-    params.damping1 = params.damping2 = params.coulomb1 = params.coulomb2 = params.rotor = 0;
-    ACCEPTED(acrobot_batch_set_params(batch, &params, NULL));
-    ACCEPTED(acrobot_batch_params(batch, &set));
+    ACCEPTED(acrobot_batch_set_all_params(batch, &params, NULL));
+    ACCEPTED(acrobot_batch_params(batch, 1, &set));
     CHECK(same(&set, &params, sizeof params));
     ACCEPTED(acrobot_init(&alone, 0));
     ACCEPTED(acrobot_set_state(&alone, &MOVING, NULL));
@@ -91,14 +95,14 @@ static void a_batch(void)
     ACCEPTED(acrobot_batch_step(batch, actions, &results, COUNT));
     CHECK(same(&rows[1], &step.observation, sizeof rows[1]));
 
-    ACCEPTED(acrobot_batch_reset_masked(batch, mask, COUNT));
+    ACCEPTED(acrobot_batch_reset_masked(batch, mask, COUNT, NULL, NULL));
     ACCEPTED(acrobot_batch_observe(batch, rows, COUNT));
     CHECK(same(&rows[1], &step.observation, sizeof rows[1]));
     CHECK(rows[0].dtheta2 <= .1f && rows[0].dtheta2 >= -.1f);
     ACCEPTED(acrobot_batch_reset(batch));
     ACCEPTED(acrobot_batch_observe(batch, rows, COUNT));
     CHECK(!same(&rows[1], &step.observation, sizeof rows[1]));
-    ACCEPTED(acrobot_batch_reset_with_seed(batch, 42));
+    ACCEPTED(acrobot_batch_reset_with(batch, &options, NULL));
     ACCEPTED(acrobot_batch_observe(batch, rows, COUNT));
     CHECK(same(rows, first, sizeof rows));
     ACCEPTED(acrobot_batch_reset_with_seeds(batch, seeds, COUNT));
@@ -110,6 +114,80 @@ static void a_batch(void)
     ACCEPTED(acrobot_batch_set_max_steps(batch, 1, NULL));
     ACCEPTED(acrobot_batch_step(batch, actions, &results, COUNT));
     CHECK(truncated[0] && truncated[1]);
+}
+
+// Each has parameters of its own, and the same as one alone, whose seed is a child of the batch's.
+static void swing_ups(void)
+{
+    ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_OWN_SIZE(COUNT)];
+    static const uint32_t seed[] = {42}, child1[] = {42, 0, 0, 0, 1};
+    static const acrobot_reset_options_t of_batch = {seed, 1, NULL}, of_child1 = {child1, 5, NULL};
+    static const float torques[COUNT] = {1, -2};
+    static acrobot_draws_t draws;
+    const acrobot_draw_t mass2 = {ACROBOT_DRAW_UNIFORM, .8f, 1.2f, 0, 0};
+    float rewards[COUNT];
+    bool terminated[COUNT], truncated[COUNT], is_done;
+    acrobot_observation_t rows[COUNT];
+    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL};
+    acrobot_batch_t *batch;
+    acrobot_batch_settings_t settings;
+    acrobot_t alone;
+    acrobot_params_t params, own;
+    acrobot_step_t step;
+    uint32_t steps;
+    int task;
+    draws.mass2 = mass2;
+    ACCEPTED(acrobot_batch_init(
+        memory, sizeof memory, COUNT, ACROBOT_TASK_SWINGUP, true, 0, &batch));
+    ACCEPTED(acrobot_batch_set_draws(batch, &draws, NULL));
+    ACCEPTED(acrobot_batch_reset_with(batch, &of_batch, NULL));
+    ACCEPTED(acrobot_init_task(&alone, ACROBOT_TASK_SWINGUP, 0, NULL));
+    ACCEPTED(acrobot_reset_with(&alone, &of_child1, NULL, NULL));
+    ACCEPTED(acrobot_draw_params(&alone, &draws, NULL));
+    ACCEPTED(acrobot_params(&alone, &params));
+    ACCEPTED(acrobot_batch_params(batch, 1, &own));
+    CHECK(same(&own, &params, sizeof own) && own.mass2 != 1 && own.damping1 == .05f);
+    ACCEPTED(acrobot_batch_step_torque(batch, torques, &results, COUNT));
+    ACCEPTED(acrobot_step_torque(&alone, torques[1], &step, NULL));
+    CHECK(same(&rows[1], &step.observation, sizeof rows[1]) && rewards[1] == step.reward);
+    ACCEPTED(acrobot_batch_elapsed_steps(batch, 1, &steps));
+    ACCEPTED(acrobot_batch_is_done(batch, 1, &is_done));
+    CHECK(steps == 1 && !is_done);
+    ACCEPTED(acrobot_task(&alone, &task));
+    ACCEPTED(acrobot_max_steps(&alone, &steps));
+    ACCEPTED(acrobot_batch_settings(batch, &settings));
+    CHECK(task == ACROBOT_TASK_SWINGUP && steps == 1000);
+    CHECK(settings.task == task && settings.max_steps == 1000 && settings.own_params);
+    ACCEPTED(acrobot_batch_set_params(batch, 0, &PARAMS, NULL));
+    ACCEPTED(acrobot_batch_params(batch, 0, &own));
+    CHECK(same(&own, &PARAMS, sizeof own));
+#ifdef ACROBOT_HAS_SNAPSHOTS
+    ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t copy[ACROBOT_BATCH_OWN_SIZE(COUNT)];
+    static uint8_t bytes[1024];
+    acrobot_observation_t copied_rows[COUNT];
+    const acrobot_batch_results_t copied = {rewards, terminated, truncated, copied_rows, NULL};
+    acrobot_batch_t *loaded;
+    acrobot_step_t loaded_step;
+    size_t length;
+    CHECK(acrobot_batch_snapshot_size(COUNT) <= sizeof bytes);
+    ACCEPTED(acrobot_batch_save(batch, bytes, sizeof bytes, &length));
+    ACCEPTED(acrobot_batch_saved_settings(bytes, length, &settings));
+    CHECK(settings.count == COUNT && settings.own_params && settings.max_steps == 1000);
+    ACCEPTED(acrobot_batch_load(copy, sizeof copy, bytes, length, &loaded));
+    ACCEPTED(acrobot_batch_step_torque(batch, torques, &results, COUNT));
+    ACCEPTED(acrobot_batch_step_torque(loaded, torques, &copied, COUNT));
+    CHECK(same(rows, copied_rows, sizeof rows));
+    CHECK(acrobot_load(&alone, bytes, length) == ACROBOT_ERROR_OTHER_SNAPSHOT);
+    bytes[40] ^= 1;
+    CHECK(acrobot_batch_load(copy, sizeof copy, bytes, length, &loaded) ==
+          ACROBOT_ERROR_DAMAGED_SNAPSHOT);
+    ACCEPTED(acrobot_save(&alone, bytes, ACROBOT_SNAPSHOT_SIZE, &length));
+    CHECK(acrobot_save(&alone, bytes, length - 1, &length) == ACROBOT_ERROR_BUFFER_TOO_SMALL);
+    ACCEPTED(acrobot_step_torque(&alone, 1, &step, NULL));
+    ACCEPTED(acrobot_load(&alone, bytes, length));
+    ACCEPTED(acrobot_step_torque(&alone, 1, &loaded_step, NULL));
+    CHECK(same(&step.observation, &loaded_step.observation, sizeof step.observation));
+#endif
 }
 
 // The first row of tests/data/draws.csv.
@@ -196,6 +274,7 @@ int main(void)
     an_acrobot();
     drawn_parameters();
     a_batch();
+    swing_ups();
     controllers();
     return report("values");
 }
