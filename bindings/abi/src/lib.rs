@@ -32,6 +32,8 @@ pub mod batch;
 #[cfg(any(target_pointer_width = "64", target_family = "wasm"))]
 pub mod snapshot;
 
+mod linked;
+
 mod memory;
 
 #[cfg(target_feature = "sse")]

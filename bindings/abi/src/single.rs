@@ -5,13 +5,14 @@ use core::num::NonZeroU32;
 use core::ptr;
 
 use acrobot::arithmetic::Damped;
-use acrobot::task::AnyTask;
+use acrobot::task::{Gymnasium, Task};
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
 use crate::SNAPSHOTS;
 use crate::data::{
     acrobot_draws_t, acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t,
 };
+use crate::linked::Linked;
 use crate::memory::{Holder, Span, change, check, get, init, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 use crate::task::{acrobot_reset_options_t, read_options, task_of};
@@ -28,7 +29,7 @@ pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],
 }
 
-type Limited = TimeLimit<Acrobot<Damped<Fast>, AnyTask>>;
+type Limited = TimeLimit<Acrobot<Damped<Fast>, Linked>>;
 
 impl Holder for acrobot_t {
     type Value = Limited;
@@ -41,7 +42,7 @@ const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 /// Gymnasium's `Acrobot-v1` in the state of `reset(seed=seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
-    status(|| Holder::init(acrobot, TimeLimit::with_task_limit(Acrobot::new(seed))))
+    status(|| Holder::init(acrobot, TimeLimit::new(Acrobot::new(seed), Gymnasium::MAX_STEPS)))
 }
 
 /// As acrobot_init, for an ACROBOT_TASK with its parameters and its limit of steps.
@@ -53,7 +54,7 @@ pub unsafe extern "C" fn acrobot_init_task(
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     init(acrobot, error, || {
-        Ok(TimeLimit::with_task_limit(Acrobot::with_task(seed, task_of(task)?)?))
+        Ok(TimeLimit::with_task_limit(Acrobot::with_task(seed, Linked::new(task_of(task)?))?))
     })
 }
 
@@ -143,7 +144,7 @@ pub unsafe extern "C" fn acrobot_task(
     acrobot: *const acrobot_t,
     task: *mut c_int,
 ) -> acrobot_status_t {
-    get(acrobot, task, |acrobot| Ok(*acrobot.task() as c_int))
+    get(acrobot, task, |acrobot| Ok(acrobot.task().task() as c_int))
 }
 
 /// Episodes are truncated after so many steps.
