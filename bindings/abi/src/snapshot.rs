@@ -15,7 +15,7 @@ use crate::single::acrobot_t;
 use crate::status::{Rejected, acrobot_status_t, acrobot_status_t::*, status};
 
 /// Bytes of a snapshot of an acrobot, at most.
-pub const ACROBOT_SNAPSHOT_SIZE: usize = 208;
+pub const ACROBOT_SNAPSHOT_SIZE: usize = 224;
 
 const CHECKSUM: usize = 4;
 

@@ -31,12 +31,12 @@
 // There are snapshots.
 #define ACROBOT_HAS_SNAPSHOTS
 // Bytes of an acrobot_t, and of an acrobot_action_space_t.
-#define ACROBOT_SIZE 336
+#define ACROBOT_SIZE 304
 #define ACROBOT_ACTION_SPACE_SIZE 96
 #define ACROBOT_GENERATOR 80
 #else
 // A microcontroller has no snapshots, and smaller acrobots.
-#define ACROBOT_SIZE 256
+#define ACROBOT_SIZE 240
 #define ACROBOT_ACTION_SPACE_SIZE 48
 #define ACROBOT_GENERATOR 40
 #endif
@@ -122,7 +122,7 @@
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
 // Bytes of a snapshot of an acrobot, at most.
-#define ACROBOT_SNAPSHOT_SIZE 208
+#define ACROBOT_SNAPSHOT_SIZE 224
 #endif
 
 typedef enum {
