@@ -19,19 +19,28 @@ pub mod data;
 
 pub mod task;
 
+#[cfg(feature = "acrobots")]
 pub mod single;
 
+#[cfg(feature = "control")]
 pub mod control;
 
+#[cfg(feature = "control")]
 pub mod planner;
 
+#[cfg(feature = "acrobots")]
 pub mod action_space;
 
+#[cfg(feature = "acrobots")]
 pub mod batch;
 
-#[cfg(any(target_pointer_width = "64", target_family = "wasm"))]
+#[cfg(all(feature = "acrobots", any(target_pointer_width = "64", target_family = "wasm")))]
 pub mod snapshot;
 
+#[cfg(target_family = "wasm")]
+mod heap;
+
+#[cfg(feature = "acrobots")]
 mod linked;
 
 mod memory;

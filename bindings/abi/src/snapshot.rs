@@ -1,15 +1,13 @@
 //! Snapshots: what Rust's postcard writes of an acrobot or a batch, and a CRC-32 of it.
 
-use core::ffi::{c_int, c_void};
-use core::num::NonZeroU32;
+use core::ffi::c_void;
 
-use acrobot::batch::{Autoreset, Batch};
-use acrobot::task::{AnyTask, Task};
+use acrobot::batch::Batch;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use postcard::Deserializer;
 use serde::Serialize;
 
-use crate::batch::{acrobot_batch_settings_t, acrobot_batch_t, place};
+use crate::batch::{acrobot_batch_t, place};
 use crate::memory::{Holder, Span, array, check, check_apart, read_slice};
 use crate::single::acrobot_t;
 use crate::status::{Rejected, acrobot_status_t, acrobot_status_t::*, status};
@@ -109,32 +107,32 @@ pub unsafe extern "C" fn acrobot_batch_save(
 }
 
 /// The first fields of a batch's snapshot: the number of acrobots and one, type, version, task and
-/// arithmetic, and the settings.
-type Beginning<'a> =
-    (usize, (&'a str, u32, &'a str, &'a str), [f64; 2], NonZeroU32, Autoreset, bool);
+/// arithmetic, bounds, limit of steps, when resets are, and whether parameters are own.
+type Beginning<'a> = (usize, &'a [u8], u32, &'a [u8], &'a [u8], [f64; 2], u32, u8, bool);
 
-fn settings(content: &[u8]) -> Result<acrobot_batch_settings_t, Rejected> {
-    let (elements, (_, _, task, _), _, max_steps, autoreset, own_params) =
-        postcard::take_from_bytes::<Beginning<'_>>(content).map_err(other)?.0;
-    let task = AnyTask::DEFAULT.named(task).ok_or_else(|| other(()))? as c_int;
-    let autoreset = autoreset as c_int;
+fn saved(content: &[u8]) -> Result<(usize, bool), Rejected> {
+    let (beginning, _) = postcard::take_from_bytes::<Beginning<'_>>(content).map_err(other)?;
+    let (elements, .., own_params) = beginning;
     // An acrobot has more than 89 bytes. A larger number could take all memory.
     let count = elements.checked_sub(1).filter(|count| *count <= content.len() / 89);
-    let (count, max_steps) = (count.ok_or_else(|| other(()))?, max_steps.get());
-    Ok(acrobot_batch_settings_t { count, task, own_params, autoreset, max_steps })
+    Ok((count.ok_or(ACROBOT_ERROR_OTHER_SNAPSHOT)?, own_params))
 }
 
-/// The settings of a batch's snapshot. acrobot_batch_size of its `count` and `own_params` is the
-/// memory that acrobot_batch_load needs.
+/// The number of acrobots in a snapshot of a batch, and whether they have own parameters.
+/// acrobot_batch_size of these is the memory that acrobot_batch_load needs.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_saved_settings(
+pub unsafe extern "C" fn acrobot_batch_saved_count(
     bytes: *const u8,
     length: usize,
-    saved: *mut acrobot_batch_settings_t,
+    count: *mut usize,
+    own_params: *mut bool,
 ) -> acrobot_status_t {
     status(|| {
-        check(saved)?;
-        saved.write(settings(open(bytes, length)?)?);
+        check(count)?;
+        check(own_params)?;
+        let (saved_count, saved_own_params) = saved(open(bytes, length)?)?;
+        count.write(saved_count);
+        own_params.write(saved_own_params);
         Ok(())
     })
 }
@@ -151,8 +149,7 @@ pub unsafe extern "C" fn acrobot_batch_load(
     status(|| {
         let content = open(bytes, length)?;
         check_apart(&[Span::new(memory.cast::<u8>(), size), Span::new(bytes, length)])?;
-        let acrobot_batch_settings_t { count, own_params, .. } = settings(content)?;
-        place(memory, size, (count, own_params), batch, |memory| {
+        place(memory, size, saved(content)?, batch, |memory| {
             let mut reader = Deserializer::from_bytes(content);
             let batch = Batch::from_snapshot(memory, &mut reader).map_err(other)?;
             whole(reader.finalize().map_err(other)?)?;

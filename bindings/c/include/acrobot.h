@@ -733,11 +733,12 @@ acrobot_status_t acrobot_batch_save(const acrobot_batch_t *batch,
 #endif
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
-// The settings of a batch's snapshot. acrobot_batch_size of its `count` and `own_params` is the
-// memory that acrobot_batch_load needs.
-acrobot_status_t acrobot_batch_saved_settings(const uint8_t *bytes,
-                                              size_t length,
-                                              acrobot_batch_settings_t *saved);
+// The number of acrobots in a snapshot of a batch, and whether they have own parameters.
+// acrobot_batch_size of these is the memory that acrobot_batch_load needs.
+acrobot_status_t acrobot_batch_saved_count(const uint8_t *bytes,
+                                           size_t length,
+                                           size_t *count,
+                                           bool *own_params);
 #endif
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
@@ -747,6 +748,16 @@ acrobot_status_t acrobot_batch_load(void *memory,
                                     const uint8_t *bytes,
                                     size_t length,
                                     acrobot_batch_t **batch);
+#endif
+
+#if defined(__wasm__)
+// `size` bytes of zeros, aligned for any type of the header; null without memory.
+uint8_t *acrobot_memory_new(size_t size);
+#endif
+
+#if defined(__wasm__)
+// Frees memory of acrobot_memory_new, with its size.
+void acrobot_memory_free(uint8_t *memory, size_t size);
 #endif
 
 #ifdef __cplusplus
