@@ -126,7 +126,7 @@ test("types pass tsc --strict, with the newest TypeScript and with 5.2", () => {
 
 /**
  * A bundle of a program for es2020, which has no top-level await; Vite 6 and others compile for it.
- * Other bundlers are in tests/clients.
+ * The job `bundlers` tries others.
  */
 const bundled = (contents) => {
   const stdin = { contents, resolveDir: folder };
