@@ -27,11 +27,13 @@
 #endif
 #endif
 
-// Bytes of a batch of `count` acrobots, as a constant of type size_t.
+// Bytes of a batch of `count` acrobots, as a constant of type size_t. sizeof is a size_t without a
+// cast, of which C++ compilers may warn.
 #if UINTPTR_MAX > 0xFFFFFFFF
-#define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * 48 + ((size_t)(count) + 15) / 16 * 640)
+#define ACROBOT_BATCH_SIZE(count) \
+  (256 + (count) * sizeof(char[48]) + ((count) + sizeof(char[15])) / 16 * 640)
 #else
-#define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * (48 + 64))
+#define ACROBOT_BATCH_SIZE(count) (256 + (count) * sizeof(char[48 + 64]))
 #endif
 
 // cbindgen writes the rest, and its comments, from the library's source.
