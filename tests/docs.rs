@@ -194,7 +194,7 @@ fn the_files_that_the_pages_name_exist() {
 }
 
 /// A block that is not compiled with the crate names the file that it is from: "```rust,ignore
-/// (path)" or "```c (path)".
+/// (path)", "```c (path)" or "```cmake (path)".
 #[test]
 fn excerpts_are_in_their_files() {
     let unindented = |text: &str| text.lines().map(str::trim_start).collect::<Vec<_>>().join("\n");
@@ -203,6 +203,7 @@ fn excerpts_are_in_their_files() {
         ("docs/real.md", "```rust,ignore ("),
         ("docs/embedded.md", "```rust,ignore ("),
         ("docs/c.md", "```c ("),
+        ("docs/c.md", "```cmake ("),
     ] {
         let text = text_of(page);
         let blocks: Vec<&str> = text.split(fence).skip(1).collect();
