@@ -41,7 +41,8 @@
 #define ACROBOT_GENERATOR 40
 #endif
 
-// Bytes of a batch of `count` acrobots, and of one with own parameters, as constants of size_t.
+// Bytes of a batch of `count` acrobots, and of one with own parameters, as constants of size_t:
+// sizeof is one without a cast, of which C++ compilers may warn.
 #ifdef __wasm__
 #define ACROBOT_BATCH_SIZE(count) ACROBOT_BATCH_OF(count, 4, 192)
 #define ACROBOT_BATCH_OWN_SIZE(count) ACROBOT_BATCH_OF(count, 4, 192 + 576)
@@ -53,7 +54,8 @@
 #define ACROBOT_BATCH_OWN_SIZE(count) ACROBOT_BATCH_OF(count, 1, 64 + 192)
 #endif
 #define ACROBOT_BATCH_OF(count, lanes, block) \
-  (704 + (size_t)(count) * ACROBOT_GENERATOR + ((size_t)(count) + lanes - 1) / lanes * (block))
+  (704 + (count) * sizeof(char[ACROBOT_GENERATOR]) + \
+   ((count) + sizeof(char[lanes]) - 1) / lanes * (block))
 
 // cbindgen writes the rest, and its comments, from the library's source.
 
