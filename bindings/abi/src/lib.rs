@@ -19,9 +19,19 @@ pub mod data;
 
 pub mod single;
 
-pub mod control;
+pub mod model;
 
-pub mod planner;
+pub mod regulator;
+
+pub mod plan;
+
+pub mod swing_up;
+
+pub mod estimate;
+
+pub mod identify;
+
+pub mod mpc;
 
 pub mod action_space;
 

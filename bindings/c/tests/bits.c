@@ -181,7 +181,7 @@ static uint64_t plan(void)
     ACCEPTED(acrobot_planner_plan(&planner, &HANGING, 64, 0, knots, KNOTS, &length, NULL));
     ACCEPTED(acrobot_state(&acrobot, &state));
     for (size_t i = 0; i < length; i++) {
-        ACCEPTED(acrobot_plan_torque(knots, length, &after, i, &state, &torque));
+        ACCEPTED(acrobot_plan_torque(knots, length, &after, i, &state, &torque, NULL));
         torque = torque > 10 ? 10 : torque < -10 ? -10 : torque;
         ACCEPTED(acrobot_step_torque(&acrobot, torque, &step, NULL));
         ACCEPTED(acrobot_state(&acrobot, &state));

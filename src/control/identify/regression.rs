@@ -31,6 +31,7 @@ const SINGULAR: f64 = 1e-10;
 /// assert!((sample.angles[1] + 0.785).abs() < 1e-3); // rad
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)] // for bindings/abi
 pub struct Sample {
     /// θ1 and θ2, rad, without jumps by whole turns.
     pub angles: [f64; 2],
