@@ -176,21 +176,27 @@ pub unsafe extern "C" fn acrobot_planner_plan(
 }
 
 /// Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
-/// `cost` receives what it costs.
+/// `plan` stays as it is, so the machine may follow it meanwhile. `improved` receives the new plan,
+/// and `cost` what it costs. Rejected calls may change `improved`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_improve(
     planner: *mut acrobot_planner_t,
     start: *const acrobot_state_t,
     iterations: u32,
-    knots: *mut acrobot_knot_t,
+    plan: *const acrobot_knot_t,
+    improved: *mut acrobot_knot_t,
     length: usize,
     cost: *mut f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(planner, cost, error, |value| {
         check(cost)?;
-        let knots = knots_of(planner, knots, length)?;
-        Ok(value.improve(read(start)?.into(), iterations, &mut *knots)?)
+        let plan = knots_of(planner, plan.cast_mut(), length)?;
+        let improved = knots_of(planner, improved, length)?;
+        check_apart(&[Span::of(plan), Span::of(improved)])?;
+        let (start, improved) = (read(start)?.into(), &mut *improved);
+        improved.copy_from_slice(&*plan);
+        Ok(value.improve(start, iterations, improved)?)
     })
 }
 

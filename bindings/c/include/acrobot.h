@@ -684,11 +684,13 @@ acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
                                       acrobot_error_t *error);
 
 // Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
-// `cost` receives what it costs.
+// `plan` stays as it is, so the machine may follow it meanwhile. `improved` receives the new plan,
+// and `cost` what it costs. Rejected calls may change `improved`.
 acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
                                          const acrobot_state_t *start,
                                          uint32_t iterations,
-                                         acrobot_knot_t *knots,
+                                         const acrobot_knot_t *plan,
+                                         acrobot_knot_t *improved,
                                          size_t length,
                                          float *cost,
                                          acrobot_error_t *error);

@@ -11,7 +11,7 @@ static const acrobot_state_t REST = {0, 0, 0, 0}, UP = {3.14159f, 0, 0, 0}, FAR 
     {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, 0, 0, 0, 0, 0, 0}
 static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
 static acrobot_draws_t reversed; // by `main`
-static acrobot_knot_t knots[COUNT];
+static acrobot_knot_t knots[COUNT], improved[COUNT];
 static const bool MASK[COUNT] = {true, false, true};
 static const uint64_t SEEDS[COUNT] = {7, 8, 9};
 
@@ -77,8 +77,8 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     ERROR(BATCH, acrobot_batch_set_params(batch, &NO_MASS, out)) \
     RESULT(PLANNER, size_t, acrobot_planner_plan(planner, &UP, 1, 4, knots, COUNT, out, NULL)) \
     ERROR(PLANNER, acrobot_planner_plan(planner, &FAR, 1, 4, knots, COUNT, &length, out)) \
-    RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, COUNT, out, NULL)) \
-    ERROR(PLANNER, acrobot_planner_improve(planner, &FAR, 1, knots, COUNT, &torque, out)) \
+    RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, improved, COUNT, out, NULL)) \
+    ERROR(PLANNER, acrobot_planner_improve(planner, &FAR, 1, knots, improved, COUNT, &torque, out)) \
     RESULT(PLANNER, acrobot_feedback_t, acrobot_planner_feedback(planner, out)) \
     RESULT(PLANNER, bool, acrobot_planner_holds_from(planner, &UP, out, NULL)) \
     ERROR(PLANNER, acrobot_planner_holds_from(planner, &FAR, &holds, out)) \
@@ -297,7 +297,7 @@ static void arguments_of_a_planner(void)
                    "power must be finite and at least 0 per J, got ");
     REJECTED(NULL, acrobot_planner_plan(planner, &REST, 2, 4, NULL, COUNT, &length, NULL));
     REJECTED(OVERLAP, acrobot_planner_plan(planner, &REST, 2, 4, inside, 1, &length, NULL));
-    REJECTED(OVERLAP, acrobot_planner_improve(planner, &REST, 2, inside, 1, &number, NULL));
+    REJECTED(OVERLAP, acrobot_planner_improve(planner, &REST, 2, knots, inside, 1, &number, NULL));
     REJECTED(OUT_OF_RANGE, acrobot_planner_holds_from(planner, &FAR, &holds, NULL));
     ACCEPTED(acrobot_planner_feedback(planner, &after));
     REJECTED(OUT_OF_RANGE, acrobot_plan_torque(knots, COUNT, &after, 0, &FAR, &number, NULL));
@@ -309,8 +309,8 @@ static void arguments_of_a_planner(void)
     expect_message(acrobot_planner_plan(planner, &REST, 2, 4, knots, COUNT, &length, &error),
                    "tries must be enough to find a plan, got ");
     knots[0].torque = INF;
-    expect_message(acrobot_planner_improve(planner, &UP, 2, knots, COUNT, &number, &error),
-                   "cost must be finite in each element, got ");
+    expect_message(acrobot_planner_improve(planner, &UP, 2, knots, improved, COUNT, &number, &error),
+                   "torque must be finite in each element, got ");
 }
 
 static void a_new_batch(void)
