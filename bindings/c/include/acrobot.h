@@ -129,6 +129,25 @@ typedef enum {
   ACROBOT_ERROR_OVERLAP = 10,
 } acrobot_status_t;
 
+// Why a call was rejected with ACROBOT_ERROR_OUT_OF_RANGE. acrobot_error_text has a text for each.
+typedef enum {
+  ACROBOT_OUT_OF_RANGE = 0,
+  // An element of a matrix, a result, or what leads to it is not finite.
+  ACROBOT_NOT_FINITE = 1,
+  ACROBOT_NOT_SYMMETRIC = 2,
+  ACROBOT_NOT_SEMIDEFINITE = 3,
+  // `value` is the first velocity that is not 0, or acceleration that is too large.
+  ACROBOT_NOT_IN_EQUILIBRIUM = 4,
+  // The torque does not reach a motion that grows or persists.
+  ACROBOT_NOT_STABILIZABLE = 5,
+  // The weights do not see a motion that persists.
+  ACROBOT_NOT_DETECTABLE = 6,
+  // The error of a gain can be above 1e-9 of its largest element, or rounding breaks it.
+  ACROBOT_ILL_CONDITIONED = 7,
+  // So many tries find no plan.
+  ACROBOT_NO_PLAN = 8,
+} acrobot_error_kind_t;
+
 // Acrobots in the memory of acrobot_batch_init. It contains pointers into this memory, so do not
 // move or copy it.
 typedef struct acrobot_batch_t acrobot_batch_t;

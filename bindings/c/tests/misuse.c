@@ -3,8 +3,6 @@
 #include "check.h"
 
 #define COUNT 3
-#define INF __builtin_inff()
-#define NAN __builtin_nanf("")
 
 static const acrobot_state_t REST = {0, 0, 0, 0}, UP = {3.14159f, 0, 0, 0}, FAR = {INF, 0, 0, 0};
 #define WITH_MASS1(mass1) \
@@ -12,6 +10,11 @@ static const acrobot_state_t REST = {0, 0, 0, 0}, UP = {3.14159f, 0, 0, 0}, FAR 
 static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
 static acrobot_draws_t reversed; // by `main`
 static acrobot_knot_t knots[COUNT], improved[COUNT];
+static const acrobot_sample_t SAMPLES[COUNT] = {{{0, 0}, {0, 0}}};
+static const acrobot_noise_t NOISE = {.001f, .01f};
+static const acrobot_parameter_std_t DOUBT = {.1f, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const acrobot_settings_t SETTINGS = {WITH_MASS1(1), 6, {4096, 1024}, 5};
+static acrobot_controller_t a_controller; // by `main`
 static const bool MASK[COUNT] = {true, false, true};
 static const uint64_t SEEDS[COUNT] = {7, 8, 9};
 
@@ -28,10 +31,14 @@ static acrobot_status_t step_batch(acrobot_batch_t *batch, void *rewards)
 }
 
 // What holds the value that a function uses.
-enum { ALONE, ACTIONS, BATCH, PLANNER, SWING_UP, HOLDERS };
+enum {
+    ALONE, ACTIONS, BATCH, PLANNER, SWING_UP, ESTIMATOR, PARAMETERS, REGRESSION, CONTROLLER,
+    REPLANNER, HOLDERS
+};
 static const size_t SIZES[] = {
     ACROBOT_SIZE, ACROBOT_ACTION_SPACE_SIZE, ACROBOT_BATCH_SIZE(COUNT), ACROBOT_PLANNER_SIZE,
-    ACROBOT_SWING_UP_SIZE,
+    ACROBOT_SWING_UP_SIZE, ACROBOT_ESTIMATOR_SIZE, ACROBOT_PARAMETER_ESTIMATOR_SIZE,
+    ACROBOT_REGRESSION_SIZE, ACROBOT_CONTROLLER_SIZE, ACROBOT_REPLANNER_SIZE,
 };
 enum { NEEDED, OPTIONAL, NONE };
 enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
@@ -41,7 +48,7 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
 #define RESULT(holder, type, ...) CALL(holder, type, NEEDED, OK, __VA_ARGS__)
 #define ERROR(holder, ...) CALL(holder, acrobot_error_t, OPTIONAL, RANGE, __VA_ARGS__)
 #define RESET(...) CALL(ALONE, row_t, OPTIONAL, OK, __VA_ARGS__)
-#define BEGIN(...) CALL(BATCH, void *, NONE, OK, (void)out, __VA_ARGS__)
+#define BEGIN(holder, ...) CALL(holder, void *, NONE, OK, (void)out, __VA_ARGS__)
 #define CALLS \
     RESET(acrobot_reset(acrobot, out)) \
     RESET(acrobot_reset_with_seed(acrobot, 7, out)) \
@@ -62,10 +69,10 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     RESULT(ALONE, float, acrobot_energy(acrobot, out)) \
     RESULT(ALONE, float, acrobot_tip_height(acrobot, out)) \
     RESULT(ACTIONS, uint8_t, acrobot_action_space_sample(action_space, out)) \
-    BEGIN(acrobot_batch_reset(batch)) \
-    BEGIN(acrobot_batch_reset_with_seed(batch, 42)) \
-    BEGIN(acrobot_batch_reset_masked(batch, MASK, COUNT)) \
-    BEGIN(acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT)) \
+    BEGIN(BATCH, acrobot_batch_reset(batch)) \
+    BEGIN(BATCH, acrobot_batch_reset_with_seed(batch, 42)) \
+    BEGIN(BATCH, acrobot_batch_reset_masked(batch, MASK, COUNT)) \
+    BEGIN(BATCH, acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT)) \
     RESULT(BATCH, rewards_t, step_batch(batch, out)) \
     RESULT(BATCH, rows_t, acrobot_batch_observe(batch, (row_t *)out, COUNT)) \
     RESULT(BATCH, size_t, acrobot_batch_count(batch, out)) \
@@ -83,7 +90,23 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     RESULT(PLANNER, bool, acrobot_planner_holds_from(planner, &UP, out, NULL)) \
     ERROR(PLANNER, acrobot_planner_holds_from(planner, &FAR, &holds, out)) \
     RESULT(SWING_UP, float, acrobot_swing_up_torque(swing_up, &UP, out, NULL)) \
-    ERROR(SWING_UP, acrobot_swing_up_torque(swing_up, &FAR, &torque, out))
+    ERROR(SWING_UP, acrobot_swing_up_torque(swing_up, &FAR, &torque, out)) \
+    ERROR(ESTIMATOR, acrobot_estimator_correct(estimator, INF, 0, out)) \
+    ERROR(ESTIMATOR, acrobot_estimator_predict(estimator, INF, out)) \
+    RESULT(ESTIMATOR, acrobot_state_t, acrobot_estimator_state(estimator, out)) \
+    RESULT(ESTIMATOR, acrobot_state_t, acrobot_estimator_state_std(estimator, out)) \
+    ERROR(PARAMETERS, acrobot_parameter_estimator_correct(parameters, 0, INF, out)) \
+    ERROR(PARAMETERS, acrobot_parameter_estimator_predict(parameters, INF, out)) \
+    RESULT(PARAMETERS, acrobot_state_t, acrobot_parameter_estimator_state(parameters, out)) \
+    RESULT(PARAMETERS, acrobot_state_t, acrobot_parameter_estimator_state_std(parameters, out)) \
+    RESULT(PARAMETERS, acrobot_params_t, acrobot_parameter_estimator_params(parameters, out)) \
+    ERROR(REGRESSION, acrobot_regression_add(regression, SAMPLES, COUNT, 0, 9.8, 1, 1, out)) \
+    RESULT(REGRESSION, acrobot_fit_t, acrobot_regression_fit(regression, out)) \
+    RESULT(CONTROLLER, float, acrobot_controller_tick(controller, 1, 2, out, NULL)) \
+    RESULT(CONTROLLER, acrobot_state_t, acrobot_controller_state(controller, out)) \
+    RESULT(CONTROLLER, acrobot_params_t, acrobot_controller_params(controller, out)) \
+    BEGIN(REPLANNER, acrobot_replanner_exchange(replanner, &a_controller)) \
+    BEGIN(REPLANNER, acrobot_replanner_work(replanner))
 
 struct call {
     int holder, optional, status;
@@ -106,6 +129,11 @@ static acrobot_status_t call(int index, void *holder, void *pointer)
     acrobot_batch_t *batch = (acrobot_batch_t *)holder;
     acrobot_planner_t *planner = (acrobot_planner_t *)holder;
     acrobot_swing_up_t *swing_up = (acrobot_swing_up_t *)holder;
+    acrobot_estimator_t *estimator = (acrobot_estimator_t *)holder;
+    acrobot_parameter_estimator_t *parameters = (acrobot_parameter_estimator_t *)holder;
+    acrobot_regression_t *regression = (acrobot_regression_t *)holder;
+    acrobot_controller_t *controller = (acrobot_controller_t *)holder;
+    acrobot_replanner_t *replanner = (acrobot_replanner_t *)holder;
     acrobot_step_t step;
     float torque;
     size_t length;
@@ -134,9 +162,9 @@ static void expect(int index, void *holder, void *out, int status)
 #define MARGIN 192
 #define SIZE ACROBOT_BATCH_SIZE(COUNT)
 // The most that a holder has.
-#define MOST (SIZE > ACROBOT_PLANNER_SIZE ? SIZE : ACROBOT_PLANNER_SIZE)
+#define MOST ACROBOT_CONTROLLER_SIZE
 ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t arena[MARGIN + MOST + MARGIN];
-ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t other[MOST], spare[MARGIN];
+ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t other[MOST], spare[2 * MARGIN];
 static uint8_t saved[MOST];
 static uint8_t *const held = arena + MARGIN;
 
@@ -146,13 +174,31 @@ static void *hold(int holder)
     acrobot_batch_t *batch;
     acrobot_problem_t problem;
     ACCEPTED(acrobot_problem_init(&problem, &PARAMS, 1, 0, NULL));
-    ACCEPTED(holder == ALONE     ? acrobot_init((acrobot_t *)memory, 42)
-             : holder == ACTIONS ? acrobot_action_space_init((acrobot_action_space_t *)memory, 42)
-             : holder == PLANNER
-                 ? acrobot_planner_init((acrobot_planner_t *)memory, &problem, NULL)
-             : holder == SWING_UP
-                 ? acrobot_swing_up_init((acrobot_swing_up_t *)memory, &PARAMS, 1, NULL)
-                 : acrobot_batch_init(memory, SIZE, COUNT, 42, &batch));
+    switch (holder) {
+    case ALONE: ACCEPTED(acrobot_init((acrobot_t *)memory, 42)); break;
+    case ACTIONS:
+        ACCEPTED(acrobot_action_space_init((acrobot_action_space_t *)memory, 42));
+        break;
+    case BATCH: ACCEPTED(acrobot_batch_init(memory, SIZE, COUNT, 42, &batch)); break;
+    case PLANNER:
+        ACCEPTED(acrobot_planner_init((acrobot_planner_t *)memory, &problem, NULL));
+        break;
+    case SWING_UP:
+        ACCEPTED(acrobot_swing_up_init((acrobot_swing_up_t *)memory, &PARAMS, 1, NULL));
+        break;
+    case ESTIMATOR:
+        ACCEPTED(acrobot_estimator_init((acrobot_estimator_t *)memory, &PARAMS, &NOISE, NULL));
+        break;
+    case PARAMETERS:
+        ACCEPTED(acrobot_parameter_estimator_init((acrobot_parameter_estimator_t *)memory, &PARAMS,
+                                                  &DOUBT, &NOISE, NULL));
+        break;
+    case REGRESSION: ACCEPTED(acrobot_regression_init((acrobot_regression_t *)memory)); break;
+    case CONTROLLER:
+        ACCEPTED(acrobot_controller_init((acrobot_controller_t *)memory, &SETTINGS, NULL));
+        break;
+    default: ACCEPTED(acrobot_replanner_init((acrobot_replanner_t *)memory, &SETTINGS, NULL));
+    }
     __builtin_memcpy(saved, held, MOST);
     return memory;
 }
@@ -197,25 +243,6 @@ static void pointers(void)
             expect(i, held, arena + at, is_apart ? row->status : ACROBOT_ERROR_OVERLAP);
             CHECK((is_apart && row->status == ACROBOT_OK) || same(held, saved, size));
             __builtin_memcpy(held, saved, size);
-        }
-    }
-}
-
-static acrobot_error_t error;
-
-// Whether a number was rejected with this message, up to its value.
-static void expect_message(acrobot_status_t status, const char *message)
-{
-    const char *parts[] = {error.name, " must be ", error.rule, ", got "}, *at = message;
-    CHECK(status == ACROBOT_ERROR_OUT_OF_RANGE);
-    for (int i = 0; i < 4; i++) {
-        for (const char *part = parts[i]; *part != 0; part++, at++) {
-            if (*part != *at) {
-                print(message);
-                print(" is not what the error says\n");
-                failures++;
-                return;
-            }
         }
     }
 }
@@ -271,46 +298,6 @@ static void arguments_of_an_acrobot(void)
     expect_message(acrobot_draw_params(acrobot, &draws, &error), "kind must be from 0 to 3, got ");
     CHECK(error.value == 4);
     CHECK(same(acrobot, saved, ACROBOT_SIZE));
-}
-
-// Each of these calls is rejected.
-static void arguments_of_a_planner(void)
-{
-    acrobot_planner_t *planner = (acrobot_planner_t *)hold(PLANNER);
-    acrobot_knot_t *inside = (acrobot_knot_t *)(void *)held;
-    acrobot_problem_t problem;
-    acrobot_feedback_t after;
-    size_t length;
-    float number;
-    bool holds;
-    REJECTED(NULL, acrobot_problem_init(NULL, &PARAMS, 1, 0, NULL));
-    REJECTED(NULL, acrobot_problem_init(&problem, NULL, 1, 0, NULL));
-    REJECTED(OUT_OF_RANGE, acrobot_problem_init(&problem, &PARAMS, 0, 0, NULL));
-    expect_message(acrobot_problem_init(&problem, &PARAMS, 1, INF, &error),
-                   "theta2 must be a finite number of rad, got ");
-    ACCEPTED(acrobot_problem_init(&problem, &PARAMS, 1, 0, NULL));
-    REJECTED(NULL, acrobot_planner_init(NULL, &problem, NULL));
-    REJECTED(NULL, acrobot_planner_init(planner, NULL, NULL));
-    REJECTED(OVERLAP, acrobot_planner_init(planner, &problem, (acrobot_error_t *)planner));
-    problem.cost.power = -1;
-    expect_message(acrobot_planner_init(planner, &problem, &error),
-                   "power must be finite and at least 0 per J, got ");
-    REJECTED(NULL, acrobot_planner_plan(planner, &REST, 2, 4, NULL, COUNT, &length, NULL));
-    REJECTED(OVERLAP, acrobot_planner_plan(planner, &REST, 2, 4, inside, 1, &length, NULL));
-    REJECTED(OVERLAP, acrobot_planner_improve(planner, &REST, 2, knots, inside, 1, &number, NULL));
-    REJECTED(OUT_OF_RANGE, acrobot_planner_holds_from(planner, &FAR, &holds, NULL));
-    ACCEPTED(acrobot_planner_feedback(planner, &after));
-    REJECTED(OUT_OF_RANGE, acrobot_plan_torque(knots, COUNT, &after, 0, &FAR, &number, NULL));
-    REJECTED(NULL, acrobot_plan_torque(NULL, COUNT, &after, 0, &REST, &number, NULL));
-    REJECTED(NULL, acrobot_plan_torque(knots, COUNT, NULL, 0, &REST, &number, NULL));
-    REJECTED(NULL, acrobot_plan_torque(knots, COUNT, &after, 0, NULL, &number, NULL));
-    REJECTED(NULL, acrobot_plan_torque(knots, COUNT, &after, 0, &REST, NULL, NULL));
-    CHECK(same(planner, saved, sizeof *planner));
-    expect_message(acrobot_planner_plan(planner, &REST, 2, 4, knots, COUNT, &length, &error),
-                   "tries must be enough to find a plan, got ");
-    knots[0].torque = INF;
-    expect_message(acrobot_planner_improve(planner, &UP, 2, knots, improved, COUNT, &number, &error),
-                   "torque must be finite in each element, got ");
 }
 
 static void a_new_batch(void)
@@ -387,10 +374,10 @@ int main(void)
     reversed.length1.kind = ACROBOT_DRAW_UNIFORM;
     reversed.length1.low = 2;
     reversed.length1.high = 1;
+    ACCEPTED(acrobot_controller_init(&a_controller, &SETTINGS, NULL));
     holders();
     pointers();
     arguments_of_an_acrobot();
-    arguments_of_a_planner();
     a_new_batch();
     arguments_of_a_batch();
     CHECK(same_text(acrobot_status_text(ACROBOT_OK), "no error"));
