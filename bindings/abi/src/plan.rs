@@ -1,6 +1,7 @@
 //! Plans.
 
 use core::mem::transmute;
+use core::ptr;
 
 use acrobot::arithmetic::Damped;
 use acrobot::control::plan::{Cost, Knot, Plan, Planner, Problem};
@@ -150,6 +151,18 @@ pub unsafe extern "C" fn acrobot_planner_init(
         let cost = transmute::<acrobot_cost_t, Cost<f32>>(cost);
         let (params, target) = (params.try_into()?, target.into());
         Ok(Planner::new(&Problem { params, limit, target, torque, cost })?)
+    })
+}
+
+/// Changes a planner to plan for a simulation that clamps velocities at the bounds of its
+/// parameters, as Gymnasium's does. Plans may use that as a brake.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_planner_with_velocity_clamp(
+    planner: *mut acrobot_planner_t,
+) -> acrobot_status_t {
+    change(planner, ptr::null_mut(), ptr::null_mut(), |value| {
+        *value = value.clone().with_velocity_clamp();
+        Ok(())
     })
 }
 

@@ -690,6 +690,10 @@ acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
                                       const acrobot_problem_t *problem,
                                       acrobot_error_t *error);
 
+// Changes a planner to plan for a simulation that clamps velocities at the bounds of its
+// parameters, as Gymnasium's does. Plans may use that as a brake.
+acrobot_status_t acrobot_planner_with_velocity_clamp(acrobot_planner_t *planner);
+
 // Plans until a plan ends where the regulator holds the target. `length` receives its number of
 // knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
 // may change knots.

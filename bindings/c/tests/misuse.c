@@ -82,6 +82,7 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     ERROR(BATCH, acrobot_batch_set_state(batch, 0, &FAR, out)) \
     RESULT(BATCH, acrobot_params_t, acrobot_batch_params(batch, out)) \
     ERROR(BATCH, acrobot_batch_set_params(batch, &NO_MASS, out)) \
+    BEGIN(PLANNER, acrobot_planner_with_velocity_clamp(planner)) \
     RESULT(PLANNER, size_t, acrobot_planner_plan(planner, &UP, 1, 4, knots, COUNT, out, NULL)) \
     ERROR(PLANNER, acrobot_planner_plan(planner, &FAR, 1, 4, knots, COUNT, &length, out)) \
     RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, improved, COUNT, out, NULL)) \

@@ -137,7 +137,7 @@ static void drawn_parameters(void)
 static void controllers(void)
 {
     static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1315927f, 0, 0, 0},
-                                 FAST = {0, 0, 1, 0};
+                                 FAST = {0, 0, 1, 0}, SLANTED = {3.1f, 0, 0, 0};
     // In units of the machine these are 1: T² is 4.5 kg m² by 24.6 N m.
     static const acrobot_weights_t WEIGHTS = {
         {{1}, {0, 1}, {0, 0, 4.5f / 24.6f}, {0, 0, 0, 4.5f / 24.6f}}, 1 / 25.f};
@@ -185,6 +185,16 @@ static void controllers(void)
     CHECK(holds);
     ACCEPTED(acrobot_planner_holds_from(&planner, &HANGING, &holds, NULL));
     CHECK(!holds);
+    // Where link 2 would turn faster than its bound.
+    params.dt = .02f;
+    params.max_velocity2 = .5f;
+    ACCEPTED(acrobot_problem_init(&problem, &params, 10, 0, NULL));
+    ACCEPTED(acrobot_planner_init(&planner, &problem, NULL));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &SLANTED, &holds, NULL));
+    CHECK(!holds);
+    ACCEPTED(acrobot_planner_with_velocity_clamp(&planner));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &SLANTED, &holds, NULL));
+    CHECK(holds);
     knot.gain.dtheta1 = 2;
     ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 0, &FAST, &torque, NULL));
     CHECK(near(torque, knot.torque - 2));
