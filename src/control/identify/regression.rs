@@ -132,6 +132,7 @@ impl Regression {
     }
 
     /// As [`fit`](Self::fit), with 0 for each number that is not free.
+    #[inline(never)] // inlined, its flags are lanes whose other bits valgrind takes for undefined
     #[expect(clippy::indexing_slicing, reason = "i and j are below N")]
     fn fit_free(&self, is_free: [bool; N]) -> Fit {
         let products = &self.products;

@@ -172,9 +172,5 @@ pub fn digests() -> [u64; 4] {
     [models(), estimates(), identification(), mpc()].map(|digest| digest.unwrap_or_default())
 }
 
-pub const CONTROL: [u64; 4] = [
-    0x10e5_9b3f_0c44_b049,
-    0xc759_cd5e_a100_19c7,
-    0xd4d4_b914_7a72_2d51,
-    0xe830_0a7e_90be_4113,
-];
+pub const CONTROL: [u64; 4] =
+    [0x10e5_9b3f_0c44_b049, 0xc759_cd5e_a100_19c7, 0xd4d4_b914_7a72_2d51, 0xe830_0a7e_90be_4113];
