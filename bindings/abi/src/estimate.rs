@@ -81,58 +81,60 @@ impl Holder for acrobot_parameter_estimator_t {
 type Filter<const K: usize> = KalmanFilter<Damped<Fast>, K>;
 
 unsafe fn correct<H: Holder<Value = Filter<K>>, const K: usize>(
-    estimator: *mut H,
+    filter: *mut H,
     angles: [f32; 2],
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    change(estimator, ptr::null_mut(), error, |value| Ok(value.correct(angles)?))
+    change(filter, ptr::null_mut(), error, |value| Ok(value.correct(angles)?))
 }
 
 unsafe fn predict<H: Holder<Value = Filter<K>>, const K: usize>(
-    estimator: *mut H,
+    filter: *mut H,
     torque: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    change(estimator, ptr::null_mut(), error, |value| Ok(value.predict(torque)?))
+    change(filter, ptr::null_mut(), error, |value| Ok(value.predict(torque)?))
 }
 
 unsafe fn state<H: Holder<Value = Filter<K>>, const K: usize>(
-    estimator: *const H,
+    filter: *const H,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    get(estimator, state, |value| Ok(value.state().into()))
+    get(filter, state, |value| Ok(value.state().into()))
 }
 
 unsafe fn state_std<H: Holder<Value = Filter<K>>, const K: usize>(
-    estimator: *const H,
+    filter: *const H,
     std: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    get(estimator, std, |value| {
-        Ok(State::from(value.state_std().unwrap_or([f32::INFINITY; 4])).into())
-    })
+    get(
+        filter,
+        std,
+        |value| Ok(State::from(value.state_std().unwrap_or([f32::INFINITY; 4])).into()),
+    )
 }
 
 /// Estimates the state of a machine with these parameters. The first measurement sets it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_estimator_init(
-    estimator: *mut acrobot_estimator_t,
+    filter: *mut acrobot_estimator_t,
     params: *const acrobot_params_t,
     noise: *const acrobot_noise_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    init(estimator, error, || Ok(Estimator::new(read(params)?.try_into()?, read(noise)?.into())?))
+    init(filter, error, || Ok(Estimator::new(read(params)?.try_into()?, read(noise)?.into())?))
 }
 
 /// Corrects the estimate by measured angles, rad. The first ones are taken as they are, with
 /// velocities of 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_estimator_correct(
-    estimator: *mut acrobot_estimator_t,
+    filter: *mut acrobot_estimator_t,
     theta1: f32,
     theta2: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    correct(estimator, [theta1, theta2], error)
+    correct(filter, [theta1, theta2], error)
 }
 
 /// Takes a step of `dt` with a torque, N m. Before a measurement it does nothing. If a joint turns
@@ -140,40 +142,40 @@ pub unsafe extern "C" fn acrobot_estimator_correct(
 /// measurement begins again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_estimator_predict(
-    estimator: *mut acrobot_estimator_t,
+    filter: *mut acrobot_estimator_t,
     torque: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    predict(estimator, torque, error)
+    predict(filter, torque, error)
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_estimator_state(
-    estimator: *const acrobot_estimator_t,
+    filter: *const acrobot_estimator_t,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    self::state(estimator, state)
+    self::state(filter, state)
 }
 
 /// The standard deviations of the state; INFINITY before a measurement.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_estimator_state_std(
-    estimator: *const acrobot_estimator_t,
+    filter: *const acrobot_estimator_t,
     std: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    state_std(estimator, std)
+    state_std(filter, std)
 }
 
 /// Estimates the state, and the parameters whose standard deviation is not 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_parameter_estimator_init(
-    estimator: *mut acrobot_parameter_estimator_t,
+    filter: *mut acrobot_parameter_estimator_t,
     params: *const acrobot_params_t,
     std: *const acrobot_parameter_std_t,
     noise: *const acrobot_noise_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    init(estimator, error, || {
+    init(filter, error, || {
         // SAFETY: both are `repr(C)` and have the same fields.
         let std = transmute::<acrobot_parameter_std_t, ParameterStd<f32>>(read(std)?);
         Ok(ParameterEstimator::new(read(params)?.try_into()?, std, read(noise)?.into())?)
@@ -183,46 +185,46 @@ pub unsafe extern "C" fn acrobot_parameter_estimator_init(
 /// As acrobot_estimator_correct.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_parameter_estimator_correct(
-    estimator: *mut acrobot_parameter_estimator_t,
+    filter: *mut acrobot_parameter_estimator_t,
     theta1: f32,
     theta2: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    correct(estimator, [theta1, theta2], error)
+    correct(filter, [theta1, theta2], error)
 }
 
 /// As acrobot_estimator_predict.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_parameter_estimator_predict(
-    estimator: *mut acrobot_parameter_estimator_t,
+    filter: *mut acrobot_parameter_estimator_t,
     torque: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    predict(estimator, torque, error)
+    predict(filter, torque, error)
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_parameter_estimator_state(
-    estimator: *const acrobot_parameter_estimator_t,
+    filter: *const acrobot_parameter_estimator_t,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    self::state(estimator, state)
+    self::state(filter, state)
 }
 
 /// As acrobot_estimator_state_std.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_parameter_estimator_state_std(
-    estimator: *const acrobot_parameter_estimator_t,
+    filter: *const acrobot_parameter_estimator_t,
     std: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    state_std(estimator, std)
+    state_std(filter, std)
 }
 
 /// The estimated parameters, and those that are known.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_parameter_estimator_params(
-    estimator: *const acrobot_parameter_estimator_t,
+    filter: *const acrobot_parameter_estimator_t,
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
-    get(estimator, params, |value| Ok((*value.params()).into()))
+    get(filter, params, |value| Ok((*value.params()).into()))
 }

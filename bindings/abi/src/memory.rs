@@ -102,8 +102,7 @@ pub unsafe fn init<H: Holder>(
 ) -> acrobot_status_t {
     status(|| {
         check_result(error, holder)?;
-        let value = check(holder).and_then(|()| call());
-        H::init(holder, value.inspect_err(|rejected| rejected.explain(error))?)
+        H::init(holder, call().inspect_err(|rejected| rejected.explain(error))?)
     })
 }
 

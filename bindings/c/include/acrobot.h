@@ -752,14 +752,14 @@ acrobot_status_t acrobot_swing_up_torque(acrobot_swing_up_t *swing_up,
                                          acrobot_error_t *error);
 
 // Estimates the state of a machine with these parameters. The first measurement sets it.
-acrobot_status_t acrobot_estimator_init(acrobot_estimator_t *estimator,
+acrobot_status_t acrobot_estimator_init(acrobot_estimator_t *filter,
                                         const acrobot_params_t *params,
                                         const acrobot_noise_t *noise,
                                         acrobot_error_t *error);
 
 // Corrects the estimate by measured angles, rad. The first ones are taken as they are, with
 // velocities of 0.
-acrobot_status_t acrobot_estimator_correct(acrobot_estimator_t *estimator,
+acrobot_status_t acrobot_estimator_correct(acrobot_estimator_t *filter,
                                            float theta1,
                                            float theta2,
                                            acrobot_error_t *error);
@@ -767,44 +767,43 @@ acrobot_status_t acrobot_estimator_correct(acrobot_estimator_t *estimator,
 // Takes a step of `dt` with a torque, N m. Before a measurement it does nothing. If a joint turns
 // by more than half a turn in the step, or a number overflows, it is rejected, and the next
 // measurement begins again.
-acrobot_status_t acrobot_estimator_predict(acrobot_estimator_t *estimator,
+acrobot_status_t acrobot_estimator_predict(acrobot_estimator_t *filter,
                                            float torque,
                                            acrobot_error_t *error);
 
-acrobot_status_t acrobot_estimator_state(const acrobot_estimator_t *estimator,
-                                         acrobot_state_t *state);
+acrobot_status_t acrobot_estimator_state(const acrobot_estimator_t *filter, acrobot_state_t *state);
 
 // The standard deviations of the state; INFINITY before a measurement.
-acrobot_status_t acrobot_estimator_state_std(const acrobot_estimator_t *estimator,
+acrobot_status_t acrobot_estimator_state_std(const acrobot_estimator_t *filter,
                                              acrobot_state_t *std);
 
 // Estimates the state, and the parameters whose standard deviation is not 0.
-acrobot_status_t acrobot_parameter_estimator_init(acrobot_parameter_estimator_t *estimator,
+acrobot_status_t acrobot_parameter_estimator_init(acrobot_parameter_estimator_t *filter,
                                                   const acrobot_params_t *params,
                                                   const acrobot_parameter_std_t *std,
                                                   const acrobot_noise_t *noise,
                                                   acrobot_error_t *error);
 
 // As acrobot_estimator_correct.
-acrobot_status_t acrobot_parameter_estimator_correct(acrobot_parameter_estimator_t *estimator,
+acrobot_status_t acrobot_parameter_estimator_correct(acrobot_parameter_estimator_t *filter,
                                                      float theta1,
                                                      float theta2,
                                                      acrobot_error_t *error);
 
 // As acrobot_estimator_predict.
-acrobot_status_t acrobot_parameter_estimator_predict(acrobot_parameter_estimator_t *estimator,
+acrobot_status_t acrobot_parameter_estimator_predict(acrobot_parameter_estimator_t *filter,
                                                      float torque,
                                                      acrobot_error_t *error);
 
-acrobot_status_t acrobot_parameter_estimator_state(const acrobot_parameter_estimator_t *estimator,
+acrobot_status_t acrobot_parameter_estimator_state(const acrobot_parameter_estimator_t *filter,
                                                    acrobot_state_t *state);
 
 // As acrobot_estimator_state_std.
-acrobot_status_t acrobot_parameter_estimator_state_std(const acrobot_parameter_estimator_t *estimator,
+acrobot_status_t acrobot_parameter_estimator_state_std(const acrobot_parameter_estimator_t *filter,
                                                        acrobot_state_t *std);
 
 // The estimated parameters, and those that are known.
-acrobot_status_t acrobot_parameter_estimator_params(const acrobot_parameter_estimator_t *estimator,
+acrobot_status_t acrobot_parameter_estimator_params(const acrobot_parameter_estimator_t *filter,
                                                     acrobot_params_t *params);
 
 // No recording.

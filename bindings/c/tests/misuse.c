@@ -9,7 +9,7 @@ static const acrobot_state_t REST = {0, 0, 0, 0}, UP = {3.14159f, 0, 0, 0}, FAR 
     {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, 0, 0, 0, 0, 0, 0}
 static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
 static acrobot_draws_t reversed; // by `main`
-static acrobot_knot_t knots[COUNT], improved[COUNT];
+static acrobot_knot_t knots[COUNT], better[COUNT];
 static const acrobot_sample_t SAMPLES[COUNT] = {{{0, 0}, {0, 0}}};
 static const acrobot_noise_t NOISE = {.001f, .01f};
 static const acrobot_parameter_std_t DOUBT = {.1f, 0, 0, 0, 0, 0, 0, 0, 0, 0};
@@ -85,8 +85,8 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     BEGIN(PLANNER, acrobot_planner_with_velocity_clamp(planner)) \
     RESULT(PLANNER, size_t, acrobot_planner_plan(planner, &UP, 1, 4, knots, COUNT, out, NULL)) \
     ERROR(PLANNER, acrobot_planner_plan(planner, &FAR, 1, 4, knots, COUNT, &length, out)) \
-    RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, improved, COUNT, out, NULL)) \
-    ERROR(PLANNER, acrobot_planner_improve(planner, &FAR, 1, knots, improved, COUNT, &torque, out)) \
+    RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, better, 3, out, NULL)) \
+    ERROR(PLANNER, acrobot_planner_improve(planner, &FAR, 1, knots, better, 3, &torque, out)) \
     RESULT(PLANNER, acrobot_feedback_t, acrobot_planner_feedback(planner, out)) \
     RESULT(PLANNER, bool, acrobot_planner_holds_from(planner, &UP, out, NULL)) \
     ERROR(PLANNER, acrobot_planner_holds_from(planner, &FAR, &holds, out)) \

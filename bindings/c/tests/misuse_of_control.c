@@ -201,7 +201,7 @@ static void a_planner(void)
 {
     acrobot_planner_t planner, before;
     acrobot_problem_t problem;
-    acrobot_knot_t *const inside = (acrobot_knot_t *)(void *)&planner, improved;
+    acrobot_knot_t *const inside = (acrobot_knot_t *)(void *)&planner, better;
     acrobot_knot_t plan = a_knot;
     size_t length;
     float cost;
@@ -222,22 +222,21 @@ static void a_planner(void)
     REJECTED(NULL, acrobot_planner_plan(&planner, &REST, 2, 4, NULL, 1, &length, NULL));
     REJECTED(OVERLAP, acrobot_planner_plan(&planner, &REST, 2, 4, inside, 1, &length, NULL));
     CHECK(same(&planner, &before, sizeof planner));
-    expect_message(acrobot_planner_plan(&planner, &REST, 2, 4, &improved, 1, &length, &error),
+    expect_message(acrobot_planner_plan(&planner, &REST, 2, 4, &better, 1, &length, &error),
                    "tries must be enough to find a plan, got ");
     REJECTED(OUT_OF_RANGE, acrobot_planner_holds_from(&planner, &FAR, &holds, NULL));
 
-    REJECTED(NULL, acrobot_planner_improve(&planner, &REST, 2, NULL, &improved, 1, &cost, NULL));
+    REJECTED(NULL, acrobot_planner_improve(&planner, &REST, 2, NULL, &better, 1, &cost, NULL));
     REJECTED(NULL, acrobot_planner_improve(&planner, &REST, 2, &plan, NULL, 1, &cost, NULL));
     REJECTED(OVERLAP, acrobot_planner_improve(&planner, &REST, 2, &plan, &plan, 1, &cost, NULL));
     REJECTED(OVERLAP, acrobot_planner_improve(&planner, &REST, 2, &plan, inside, 1, &cost, NULL));
-    REJECTED(OVERLAP,
-             acrobot_planner_improve(&planner, &REST, 2, inside, &improved, 1, &cost, NULL));
+    REJECTED(OVERLAP, acrobot_planner_improve(&planner, &REST, 2, inside, &better, 1, &cost, NULL));
     // The plan that a machine follows stays, also from a state that is too extreme.
-    expect_message(acrobot_planner_improve(&planner, &FASTEST, 2, &plan, &improved, 1, &cost, &error),
+    expect_message(acrobot_planner_improve(&planner, &FASTEST, 2, &plan, &better, 1, &cost, &error),
                    "cost must be finite in each element, got ");
     CHECK(same(&plan, &a_knot, sizeof plan));
     plan.torque = INF;
-    expect_message(acrobot_planner_improve(&planner, &REST, 2, &plan, &improved, 1, &cost, &error),
+    expect_message(acrobot_planner_improve(&planner, &REST, 2, &plan, &better, 1, &cost, &error),
                    "torque must be finite in each element, got ");
 }
 
