@@ -23,10 +23,25 @@ pub mod task;
 pub mod single;
 
 #[cfg(feature = "control")]
-pub mod control;
+pub mod model;
 
 #[cfg(feature = "control")]
-pub mod planner;
+pub mod regulator;
+
+#[cfg(feature = "control")]
+pub mod plan;
+
+#[cfg(feature = "control")]
+pub mod swing_up;
+
+#[cfg(feature = "control")]
+pub mod estimate;
+
+#[cfg(feature = "control")]
+pub mod identify;
+
+#[cfg(feature = "control")]
+pub mod mpc;
 
 #[cfg(feature = "acrobots")]
 pub mod action_space;

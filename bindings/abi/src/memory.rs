@@ -78,6 +78,34 @@ pub struct Tagged<T: Holder> {
     value: T::Value,
 }
 
+/// Writes a result, or why a number was rejected, where not null.
+pub unsafe fn compute<T>(
+    result: *mut T,
+    error: *mut acrobot_error_t,
+    call: impl FnOnce() -> Result<T, Rejected>,
+) -> acrobot_status_t {
+    status(|| {
+        check(result)?;
+        if !error.is_null() {
+            check(error)?;
+        }
+        result.write(call().inspect_err(|rejected| rejected.explain(error))?);
+        Ok(())
+    })
+}
+
+/// Initializes a holder. Writes why a number was rejected, where not null.
+pub unsafe fn init<H: Holder>(
+    holder: *mut H,
+    error: *mut acrobot_error_t,
+    call: impl FnOnce() -> Result<H::Value, Rejected>,
+) -> acrobot_status_t {
+    status(|| {
+        check_result(error, holder)?;
+        H::init(holder, call().inspect_err(|rejected| rejected.explain(error))?)
+    })
+}
+
 /// Changes a holder's value. Writes the result, or why a number was rejected, where not null.
 pub unsafe fn change<H: Holder, T>(
     holder: *mut H,
@@ -94,23 +122,6 @@ pub unsafe fn change<H: Holder, T>(
             result.write(value);
         }
         Ok(())
-    })
-}
-
-/// Makes a holder's value. Writes why a number was rejected, where not null.
-pub unsafe fn init<H: Holder>(
-    holder: *mut H,
-    error: *mut acrobot_error_t,
-    make: impl FnOnce() -> Result<H::Value, Rejected>,
-) -> acrobot_status_t {
-    status(|| {
-        check(holder)?;
-        if !error.is_null() {
-            check(error)?;
-            check_apart(&[Span::new(error, 1), Span::new(holder, 1)])?;
-        }
-        let value = make().inspect_err(|rejected| rejected.explain(error))?;
-        H::init(holder, value)
     })
 }
 

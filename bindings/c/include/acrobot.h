@@ -108,6 +108,21 @@
 // Bytes of an acrobot_swing_up_t.
 #define ACROBOT_SWING_UP_SIZE 496
 
+// Bytes of an acrobot_estimator_t.
+#define ACROBOT_ESTIMATOR_SIZE 288
+
+// Bytes of an acrobot_parameter_estimator_t.
+#define ACROBOT_PARAMETER_ESTIMATOR_SIZE 960
+
+// Bytes of an acrobot_regression_t.
+#define ACROBOT_REGRESSION_SIZE 992
+
+// Bytes of an acrobot_controller_t.
+#define ACROBOT_CONTROLLER_SIZE 5552
+
+// Bytes of an acrobot_replanner_t.
+#define ACROBOT_REPLANNER_SIZE 5376
+
 // Alignment of a batch's memory.
 #define ACROBOT_BATCH_ALIGN 64
 
@@ -154,6 +169,25 @@ typedef enum {
   ACROBOT_ERROR_SHARED_PARAMS = 13,
 } acrobot_status_t;
 
+// Why a call was rejected with ACROBOT_ERROR_OUT_OF_RANGE. acrobot_error_text has a text for each.
+typedef enum {
+  ACROBOT_OUT_OF_RANGE = 0,
+  // An element of a matrix, a result, or what leads to it is not finite.
+  ACROBOT_NOT_FINITE = 1,
+  ACROBOT_NOT_SYMMETRIC = 2,
+  ACROBOT_NOT_SEMIDEFINITE = 3,
+  // `value` is the first velocity that is not 0, or acceleration that is too large.
+  ACROBOT_NOT_IN_EQUILIBRIUM = 4,
+  // The torque does not reach a motion that grows or persists.
+  ACROBOT_NOT_STABILIZABLE = 5,
+  // The weights do not see a motion that persists.
+  ACROBOT_NOT_DETECTABLE = 6,
+  // The error of a gain can be above 1e-9 of its largest element, or rounding breaks it.
+  ACROBOT_ILL_CONDITIONED = 7,
+  // So many tries find no plan.
+  ACROBOT_NO_PLAN = 8,
+} acrobot_error_kind_t;
+
 // Acrobots in the memory of acrobot_batch_init. It contains pointers into this memory, so do not
 // move or copy it.
 typedef struct acrobot_batch_t acrobot_batch_t;
@@ -167,12 +201,14 @@ typedef struct ACROBOT_ALIGNED(16) {
 // `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
 typedef struct {
   double value;
+  // One of acrobot_error_kind_t.
+  int kind;
   // `"dt"`
   char name[24];
   // `"s"`
   char unit[16];
   // `"finite and above 0 s"`
-  char rule[64];
+  char rule[80];
 } acrobot_error_t;
 
 // Cosine and sine of each angle of the acrobot_state_t, and its angular velocities, rad/s; six
@@ -303,12 +339,55 @@ typedef struct {
   acrobot_draw_t rotor;
 } acrobot_draws_t;
 
-// One step, linearized: deviations x of the state and u of the torque become A x + B u.
+// How fast a state changes: angular velocities, rad/s, and accelerations, rad/s².
+typedef struct {
+  float dtheta1;
+  float dtheta2;
+  float ddtheta1;
+  float ddtheta2;
+} acrobot_rates_t;
+
+// The torques and forces of a motion.
+typedef struct {
+  // The torques on θ1 and θ2 that the motion needs, N m. The second is that of the motor. The
+  // first joint has none, so an acrobot's first torque is 0.
+  float torques[2];
+  // The force of the fixed joint on link 1, to the right and up, N.
+  float reaction[2];
+  // The same of link 1 on link 2 in the elbow.
+  float elbow[2];
+} acrobot_forces_t;
+
+// The equations of motion, linearized: deviations x of the state and u of the torque have the
+// rates A x + B u.
+typedef struct {
+  // A by rows, and B.
+  float a[4][4];
+  float b[4];
+} acrobot_linear_model_t;
+
+// One step of `dt`, linearized: deviations x of the state and u of the torque become A x + B u.
 typedef struct {
   // A by rows, and B.
   float a[4][4];
   float b[4];
 } acrobot_step_model_t;
+
+// What a regulator weighs: xᵀ Q x + R u² for a deviation x of the state and u of the torque.
+typedef struct {
+  // Q by rows, 1/rad² and s²/rad²: symmetric and positive semidefinite.
+  float q[4][4];
+  // R, 1/(N m)²; above 0.
+  float r;
+} acrobot_weights_t;
+
+// A linear-quadratic regulator.
+typedef struct {
+  // K of u = −K x, N m per rad and per rad/s.
+  acrobot_state_t gain;
+  // P by rows: xᵀ P x is the cost from x on.
+  float cost_to_go[4][4];
+} acrobot_lqr_t;
 
 // The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
 typedef struct {
@@ -389,6 +468,92 @@ typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_SWING_UP_SIZE];
 } acrobot_swing_up_t;
 
+// Estimates the state of a machine: an extended Kalman filter. Call acrobot_estimator_init first,
+// and then in each `dt` correct, decide and predict. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_ESTIMATOR_SIZE];
+} acrobot_estimator_t;
+
+// The noise of a machine.
+typedef struct {
+  // The standard deviation of a measured angle, rad; above 0 and at most 2. An encoder with n
+  // counts for a turn has 1.8 / n.
+  float angle_std;
+  // The standard deviation of the torque that acts, N m; above 0, and so small that a step
+  // changes θ̇2 by at most 1 / `dt`.
+  float torque_std;
+} acrobot_noise_t;
+
+// As acrobot_estimator_t, and estimates parameters.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_PARAMETER_ESTIMATOR_SIZE];
+} acrobot_parameter_estimator_t;
+
+// The standard deviations of parameters, each in its unit: 0 for one that is known.
+typedef struct {
+  float mass1;
+  float mass2;
+  float length1;
+  float inertia1;
+  float inertia2;
+  float damping1;
+  float damping2;
+  float coulomb1;
+  float coulomb2;
+  float rotor;
+} acrobot_parameter_std_t;
+
+// A regression of recordings, of constant size. Call acrobot_regression_init first. You may copy
+// and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_REGRESSION_SIZE];
+} acrobot_regression_t;
+
+// A sample of a recording, in double precision.
+typedef struct {
+  // θ1 and θ2, rad, without jumps by whole turns.
+  double angles[2];
+  // The torques on θ1 and θ2 from this sample to the next, N m. An acrobot's first is 0.
+  double torques[2];
+} acrobot_sample_t;
+
+// What fits recordings: the elements of the mass matrix where θ2 is ±π/2, [1, 1], [1, 2] and
+// [2, 2], kg m²; the moments m1 lc1 + m2 l1 and m2 lc2, kg m; the coupling m2 l1 lc2, kg m²;
+// viscous friction of both joints, N m s/rad; their Coulomb friction, N m.
+typedef struct {
+  double values[10];
+  // Their standard errors; INFINITY for a number that the recordings do not determine.
+  double std_errors[10];
+  // The combination that they determine least: the part of each number.
+  double weakest[10];
+  // How many combinations they do not determine.
+  size_t rank_deficiency;
+} acrobot_fit_t;
+
+// What a timer's interrupt does: it estimates the state, and follows a plan of 100 decisions. Call
+// acrobot_controller_init first. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_CONTROLLER_SIZE];
+} acrobot_controller_t;
+
+// A machine with encoders.
+typedef struct {
+  // `dt` is the time from a tick to the next.
+  acrobot_params_t params;
+  // The motor's largest torque, N m.
+  float limit;
+  // The counts of each encoder for a turn, above 0.
+  int32_t counts[2];
+  // Ticks from a decision to the next, above 0, such as 5 of 2 ms.
+  uint32_t ticks;
+} acrobot_settings_t;
+
+// What the main loop does: it plans for the estimated machine while this moves. Call
+// acrobot_replanner_init first. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_REPLANNER_SIZE];
+} acrobot_replanner_t;
+
 // Draws random actions: Gymnasium's `action_space`. You may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_ACTION_SPACE_SIZE];
@@ -428,6 +593,9 @@ extern "C" {
 
 // The text of any status. It is constant: do not free it.
 const char *acrobot_status_text(int status);
+
+// What Rust's `Error::message` says of the `kind` of an error. It is constant: do not free it.
+const char *acrobot_error_text(int kind);
 
 // Gymnasium's `Acrobot-v1` in the state of `reset(seed=seed)`.
 acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
@@ -503,32 +671,80 @@ acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
 // The height of the tip above the fixed joint, m.
 acrobot_status_t acrobot_tip_height(const acrobot_t *acrobot, float *height);
 
-// The deviation of the state from a finite `target`, with angles wrapped to ±π.
-acrobot_status_t acrobot_deviation_from(const acrobot_t *acrobot,
+// The deviation of a state from a `target`, with angles wrapped to ±π.
+acrobot_status_t acrobot_deviation_from(const acrobot_state_t *state,
                                         const acrobot_state_t *target,
-                                        acrobot_state_t *deviation);
+                                        acrobot_state_t *deviation,
+                                        acrobot_error_t *error);
 
-// Linearizes one step of the acrobot about any state and torque, N m.
-acrobot_status_t acrobot_linearize_step(acrobot_t *acrobot,
+// The rates of a state under a torque, N m, by the equations of motion.
+acrobot_status_t acrobot_derivative(const acrobot_params_t *params,
+                                    const acrobot_state_t *state,
+                                    float torque,
+                                    acrobot_rates_t *rates,
+                                    acrobot_error_t *error);
+
+// The mass matrix M by rows, kg m²: the kinetic energy is half of vᵀ M v for the velocities v.
+acrobot_status_t acrobot_mass_matrix(const acrobot_params_t *params,
+                                     const acrobot_state_t *state,
+                                     float (*mass_matrix)[2][2],
+                                     acrobot_error_t *error);
+
+// What accelerations, rad/s², need in a state: the inverse of acrobot_derivative.
+acrobot_status_t acrobot_inverse_dynamics(const acrobot_params_t *params,
+                                          const acrobot_state_t *state,
+                                          float ddtheta1,
+                                          float ddtheta2,
+                                          acrobot_forces_t *forces,
+                                          acrobot_error_t *error);
+
+// Linearizes the equations of motion about any state and torque, N m.
+acrobot_status_t acrobot_linearize(const acrobot_params_t *params,
+                                   const acrobot_state_t *state,
+                                   float torque,
+                                   acrobot_linear_model_t *model,
+                                   acrobot_error_t *error);
+
+// Linearizes one step about any state and torque, N m.
+acrobot_status_t acrobot_linearize_step(const acrobot_params_t *params,
                                         const acrobot_state_t *state,
                                         float torque,
                                         acrobot_step_model_t *model,
                                         acrobot_error_t *error);
 
-// The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque is
-// −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
-//
-// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
-// accelerations of at most 0.25 % of that of the straight acrobot that falls from horizontal. `q`
-// has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that
-// of the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the
-// `gain`.
-acrobot_status_t acrobot_regulator(acrobot_t *acrobot,
+// The regulator that holds a machine at `target`, which must be in equilibrium under `torque`,
+// N m, such as upright and 0: velocities of 0, and accelerations of at most 0.25 % of that with
+// which the straight machine, when it is horizontal, falls and is turned by the torque. Decisions
+// are `dt` apart. The torque is then `torque` − K x, a sum of four products; clamp it to that of
+// your motor.
+acrobot_status_t acrobot_regulator(const acrobot_params_t *params,
                                    const acrobot_state_t *target,
-                                   const acrobot_state_t *q,
-                                   float r,
-                                   acrobot_state_t *gain,
+                                   float torque,
+                                   const acrobot_weights_t *weights,
+                                   acrobot_lqr_t *lqr,
                                    acrobot_error_t *error);
+
+// The regulator of a model in continuous time: the least integral of the weights.
+acrobot_status_t acrobot_lqr(const acrobot_linear_model_t *model,
+                             const acrobot_weights_t *weights,
+                             acrobot_lqr_t *lqr,
+                             acrobot_error_t *error);
+
+// The regulator of a model of steps: the least sum of the weights.
+acrobot_status_t acrobot_dlqr(const acrobot_step_model_t *model,
+                              const acrobot_weights_t *weights,
+                              acrobot_lqr_t *lqr,
+                              acrobot_error_t *error);
+
+// The regulator along a trajectory: `models` and `gains` have an element for each step. P of
+// xᵀ P x, the cost after the last step, becomes that before the first. Rejected calls may change
+// gains.
+acrobot_status_t acrobot_tvlqr(const acrobot_step_model_t *models,
+                               const acrobot_weights_t *weights,
+                               float (*cost_to_go)[4][4],
+                               acrobot_state_t *gains,
+                               size_t count,
+                               acrobot_error_t *error);
 
 // The problem to stand with an `elbow` angle, rad, for a largest torque, N m: 0 is a swing-up. It
 // has the default weights, which follow from the size of the machine. Then you may change them.
@@ -543,6 +759,10 @@ acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
                                       const acrobot_problem_t *problem,
                                       acrobot_error_t *error);
 
+// Changes a planner to plan for a simulation that clamps velocities at the bounds of its
+// parameters, as Gymnasium's does. Plans may use that as a brake.
+acrobot_status_t acrobot_planner_with_velocity_clamp(acrobot_planner_t *planner);
+
 // Plans until a plan ends where the regulator holds the target. `length` receives its number of
 // knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
 // may change knots.
@@ -556,11 +776,13 @@ acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
                                       acrobot_error_t *error);
 
 // Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
-// `cost` receives what it costs.
+// `plan` stays as it is, so the machine may follow it meanwhile. `improved` receives the new plan,
+// and `cost` what it costs. Rejected calls may change `improved`.
 acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
                                          const acrobot_state_t *start,
                                          uint32_t iterations,
-                                         acrobot_knot_t *knots,
+                                         const acrobot_knot_t *plan,
+                                         acrobot_knot_t *improved,
                                          size_t length,
                                          float *cost,
                                          acrobot_error_t *error);
@@ -572,7 +794,8 @@ acrobot_status_t acrobot_planner_feedback(const acrobot_planner_t *planner,
 // Whether this feedback, with the largest torque, takes the machine from a state to the target.
 acrobot_status_t acrobot_planner_holds_from(const acrobot_planner_t *planner,
                                             const acrobot_state_t *state,
-                                            bool *holds);
+                                            bool *holds,
+                                            acrobot_error_t *error);
 
 // The torque at a step of a plan, N m, and after it that of the feedback. Clamp it to that of your
 // motor. It needs no planner, so knots and feedback may be constants.
@@ -581,7 +804,8 @@ acrobot_status_t acrobot_plan_torque(const acrobot_knot_t *knots,
                                      const acrobot_feedback_t *after,
                                      size_t step,
                                      const acrobot_state_t *state,
-                                     float *torque);
+                                     float *torque,
+                                     acrobot_error_t *error);
 
 // For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
 // torque, N m.
@@ -595,6 +819,139 @@ acrobot_status_t acrobot_swing_up_torque(acrobot_swing_up_t *swing_up,
                                          const acrobot_state_t *state,
                                          float *torque,
                                          acrobot_error_t *error);
+
+// Estimates the state of a machine with these parameters. The first measurement sets it.
+acrobot_status_t acrobot_estimator_init(acrobot_estimator_t *filter,
+                                        const acrobot_params_t *params,
+                                        const acrobot_noise_t *noise,
+                                        acrobot_error_t *error);
+
+// Corrects the estimate by measured angles, rad. The first ones are taken as they are, with
+// velocities of 0.
+acrobot_status_t acrobot_estimator_correct(acrobot_estimator_t *filter,
+                                           float theta1,
+                                           float theta2,
+                                           acrobot_error_t *error);
+
+// Takes a step of `dt` with a torque, N m. Before a measurement it does nothing. If a joint turns
+// by more than half a turn in the step, or a number overflows, it is rejected, and the next
+// measurement begins again.
+acrobot_status_t acrobot_estimator_predict(acrobot_estimator_t *filter,
+                                           float torque,
+                                           acrobot_error_t *error);
+
+acrobot_status_t acrobot_estimator_state(const acrobot_estimator_t *filter, acrobot_state_t *state);
+
+// The standard deviations of the state; INFINITY before a measurement.
+acrobot_status_t acrobot_estimator_state_std(const acrobot_estimator_t *filter,
+                                             acrobot_state_t *std);
+
+// Estimates the state, and the parameters whose standard deviation is not 0.
+acrobot_status_t acrobot_parameter_estimator_init(acrobot_parameter_estimator_t *filter,
+                                                  const acrobot_params_t *params,
+                                                  const acrobot_parameter_std_t *std,
+                                                  const acrobot_noise_t *noise,
+                                                  acrobot_error_t *error);
+
+// As acrobot_estimator_correct.
+acrobot_status_t acrobot_parameter_estimator_correct(acrobot_parameter_estimator_t *filter,
+                                                     float theta1,
+                                                     float theta2,
+                                                     acrobot_error_t *error);
+
+// As acrobot_estimator_predict.
+acrobot_status_t acrobot_parameter_estimator_predict(acrobot_parameter_estimator_t *filter,
+                                                     float torque,
+                                                     acrobot_error_t *error);
+
+acrobot_status_t acrobot_parameter_estimator_state(const acrobot_parameter_estimator_t *filter,
+                                                   acrobot_state_t *state);
+
+// As acrobot_estimator_state_std.
+acrobot_status_t acrobot_parameter_estimator_state_std(const acrobot_parameter_estimator_t *filter,
+                                                       acrobot_state_t *std);
+
+// The estimated parameters, and those that are known.
+acrobot_status_t acrobot_parameter_estimator_params(const acrobot_parameter_estimator_t *filter,
+                                                    acrobot_params_t *params);
+
+// No recording.
+acrobot_status_t acrobot_regression_init(acrobot_regression_t *regression);
+
+// Adds a recording with a sample in each `dt`, s, of a machine under `gravity`, m/s². A velocity
+// is that of a parabola through 2 `half` + 1 angles, and a window has so many samples; the next
+// one begins in its middle. Both are above 0. A recording that is too short adds nothing.
+acrobot_status_t acrobot_regression_add(acrobot_regression_t *regression,
+                                        const acrobot_sample_t *samples,
+                                        size_t count,
+                                        double dt,
+                                        double gravity,
+                                        size_t half,
+                                        size_t window,
+                                        acrobot_error_t *error);
+
+// The numbers that fit the recordings best.
+acrobot_status_t acrobot_regression_fit(const acrobot_regression_t *regression, acrobot_fit_t *fit);
+
+// The parameters of a fit: those of `given` with the length of link 1, masses, inertias, rotor and
+// friction that move as the machine does. Rejected if no machine has these numbers, or the
+// recordings do not determine one that is not a friction.
+acrobot_status_t acrobot_fit_params(const acrobot_fit_t *fit,
+                                    const acrobot_params_t *given,
+                                    acrobot_params_t *params,
+                                    acrobot_error_t *error);
+
+// The parameters of a recording with a sample in each `dt` of `given`, whose lengths should be
+// about right, too. Tries many windows, and takes those that predict best.
+acrobot_status_t acrobot_identify(const acrobot_sample_t *samples,
+                                  size_t count,
+                                  const acrobot_params_t *given,
+                                  acrobot_params_t *params,
+                                  acrobot_error_t *error);
+
+// The root of the mean square of the errors of angles, rad, if they are predicted `horizon` steps
+// ahead; 0 for a recording that is too short.
+acrobot_status_t acrobot_prediction_error(const acrobot_params_t *params,
+                                          const acrobot_sample_t *samples,
+                                          size_t count,
+                                          size_t horizon,
+                                          double *prediction_error,
+                                          acrobot_error_t *error);
+
+// A controller without a plan: its torque is 0.
+acrobot_status_t acrobot_controller_init(acrobot_controller_t *controller,
+                                         const acrobot_settings_t *settings,
+                                         acrobot_error_t *error);
+
+// The torque from now to the next tick, N m, from what both encoders count. It is short. If it is
+// rejected, switch the motor off.
+acrobot_status_t acrobot_controller_tick(acrobot_controller_t *controller,
+                                         int32_t count1,
+                                         int32_t count2,
+                                         float *torque,
+                                         acrobot_error_t *error);
+
+// The estimated state.
+acrobot_status_t acrobot_controller_state(const acrobot_controller_t *controller,
+                                          acrobot_state_t *state);
+
+// The estimated parameters.
+acrobot_status_t acrobot_controller_params(const acrobot_controller_t *controller,
+                                           acrobot_params_t *params);
+
+// A replanner without a plan.
+acrobot_status_t acrobot_replanner_init(acrobot_replanner_t *replanner,
+                                        const acrobot_settings_t *settings,
+                                        acrobot_error_t *error);
+
+// Gives the controller the plan once it is due, and takes the estimates. It is short, and no tick
+// may come meanwhile: switch the interrupt off.
+acrobot_status_t acrobot_replanner_exchange(acrobot_replanner_t *replanner,
+                                            acrobot_controller_t *controller);
+
+// Plans for some milliseconds to tens of them: once after each acrobot_replanner_exchange. The
+// interrupt may stop it anywhere.
+acrobot_status_t acrobot_replanner_work(acrobot_replanner_t *replanner);
 
 // Gymnasium's `action_space.seed(seed)`.
 acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space, uint64_t seed);

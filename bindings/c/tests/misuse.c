@@ -3,16 +3,18 @@
 #include "check.h"
 
 #define COUNT 3
-#define INF __builtin_inff()
-#define NAN __builtin_nanf("")
 
 static const acrobot_state_t REST = {0, 0, 0, 0}, UP = {3.14159f, 0, 0, 0}, FAR = {INF, 0, 0, 0};
 #define WITH_MASS1(mass1) \
     {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, 0, 0, 0, 0, 0, 0}
 static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
 static acrobot_draws_t reversed; // by `main`
-static const acrobot_state_t ONES = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
-static acrobot_knot_t knots[COUNT];
+static acrobot_knot_t knots[COUNT], better[COUNT];
+static const acrobot_sample_t SAMPLES[COUNT] = {{{0, 0}, {0, 0}}};
+static const acrobot_noise_t NOISE = {.001f, .01f};
+static const acrobot_parameter_std_t DOUBT = {.1f, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const acrobot_settings_t SETTINGS = {WITH_MASS1(1), 6, {4096, 1024}, 5};
+static acrobot_controller_t a_controller; // by `main`
 static const bool MASK[COUNT] = {true, false, true};
 static const uint64_t SEEDS[COUNT] = {7, 8, 9};
 static const double BOUNDS[] = {-1, 1, -1};
@@ -31,10 +33,14 @@ static acrobot_status_t step_batch(acrobot_batch_t *batch, void *rewards)
 }
 
 // What holds the value that a function uses.
-enum { ALONE, ACTIONS, BATCH, PLANNER, SWING_UP, HOLDERS };
+enum {
+    ALONE, ACTIONS, BATCH, PLANNER, SWING_UP, ESTIMATOR, PARAMETERS, REGRESSION, CONTROLLER,
+    REPLANNER, HOLDERS
+};
 static const size_t SIZES[] = {
     ACROBOT_SIZE, ACROBOT_ACTION_SPACE_SIZE, ACROBOT_BATCH_OWN_SIZE(COUNT), ACROBOT_PLANNER_SIZE,
-    ACROBOT_SWING_UP_SIZE,
+    ACROBOT_SWING_UP_SIZE, ACROBOT_ESTIMATOR_SIZE, ACROBOT_PARAMETER_ESTIMATOR_SIZE,
+    ACROBOT_REGRESSION_SIZE, ACROBOT_CONTROLLER_SIZE, ACROBOT_REPLANNER_SIZE,
 };
 enum { NEEDED, OPTIONAL, NONE };
 enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
@@ -44,7 +50,7 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
 #define RESULT(holder, type, ...) CALL(holder, type, NEEDED, OK, __VA_ARGS__)
 #define ERROR(holder, ...) CALL(holder, acrobot_error_t, OPTIONAL, RANGE, __VA_ARGS__)
 #define RESET(...) CALL(ALONE, row_t, OPTIONAL, OK, __VA_ARGS__)
-#define BEGIN(...) CALL(BATCH, void *, NONE, OK, (void)out, __VA_ARGS__)
+#define BEGIN(holder, ...) CALL(holder, void *, NONE, OK, (void)out, __VA_ARGS__)
 #define CALLS \
     RESET(acrobot_reset(acrobot, out)) \
     RESET(acrobot_reset_with_seed(acrobot, 7, out)) \
@@ -66,18 +72,13 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     ERROR(ALONE, acrobot_draw_params(acrobot, &reversed, out)) \
     RESULT(ALONE, float, acrobot_energy(acrobot, out)) \
     RESULT(ALONE, float, acrobot_tip_height(acrobot, out)) \
-    RESULT(ALONE, acrobot_step_model_t, acrobot_linearize_step(acrobot, &REST, 0, out, NULL)) \
-    ERROR(ALONE, acrobot_linearize_step(acrobot, &REST, INF, &model, out)) \
-    RESULT(ALONE, acrobot_state_t, acrobot_deviation_from(acrobot, &REST, out)) \
-    RESULT(ALONE, acrobot_state_t, acrobot_regulator(acrobot, &REST, &ONES, 1, out, NULL)) \
-    ERROR(ALONE, acrobot_regulator(acrobot, &FAR, &ONES, 1, &x, out)) \
     RESULT(ACTIONS, uint8_t, acrobot_action_space_sample(action_space, out)) \
-    BEGIN(acrobot_batch_reset(batch)) \
-    BEGIN(acrobot_batch_reset_with(batch, &WIDE, NULL)) \
+    BEGIN(BATCH, acrobot_batch_reset(batch)) \
+    BEGIN(BATCH, acrobot_batch_reset_with(batch, &WIDE, NULL)) \
     ERROR(BATCH, acrobot_batch_reset_with(batch, &SWAPPED, out)) \
-    BEGIN(acrobot_batch_reset_masked(batch, MASK, COUNT, NULL, NULL)) \
+    BEGIN(BATCH, acrobot_batch_reset_masked(batch, MASK, COUNT, NULL, NULL)) \
     ERROR(BATCH, acrobot_batch_reset_masked(batch, MASK, COUNT, &SWAPPED, out)) \
-    BEGIN(acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT)) \
+    BEGIN(BATCH, acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT)) \
     RESULT(BATCH, rewards_t, step_batch(batch, out)) \
     RESULT(BATCH, rows_t, acrobot_batch_observe(batch, (row_t *)out, COUNT)) \
     RESULT(BATCH, acrobot_batch_settings_t, acrobot_batch_settings(batch, out)) \
@@ -91,14 +92,32 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     RESULT(BATCH, acrobot_params_t, acrobot_batch_params(batch, 0, out)) \
     ERROR(BATCH, acrobot_batch_set_all_params(batch, &NO_MASS, out)) \
     ERROR(BATCH, acrobot_batch_set_params(batch, 0, &NO_MASS, out)) \
+    BEGIN(PLANNER, acrobot_planner_with_velocity_clamp(planner)) \
     RESULT(PLANNER, size_t, acrobot_planner_plan(planner, &UP, 1, 4, knots, COUNT, out, NULL)) \
     ERROR(PLANNER, acrobot_planner_plan(planner, &FAR, 1, 4, knots, COUNT, &length, out)) \
-    RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, COUNT, out, NULL)) \
-    ERROR(PLANNER, acrobot_planner_improve(planner, &FAR, 1, knots, COUNT, &torque, out)) \
+    RESULT(PLANNER, float, acrobot_planner_improve(planner, &UP, 1, knots, better, 3, out, NULL)) \
+    ERROR(PLANNER, acrobot_planner_improve(planner, &FAR, 1, knots, better, 3, &torque, out)) \
     RESULT(PLANNER, acrobot_feedback_t, acrobot_planner_feedback(planner, out)) \
-    RESULT(PLANNER, bool, acrobot_planner_holds_from(planner, &UP, out)) \
+    RESULT(PLANNER, bool, acrobot_planner_holds_from(planner, &UP, out, NULL)) \
+    ERROR(PLANNER, acrobot_planner_holds_from(planner, &FAR, &holds, out)) \
     RESULT(SWING_UP, float, acrobot_swing_up_torque(swing_up, &UP, out, NULL)) \
-    ERROR(SWING_UP, acrobot_swing_up_torque(swing_up, &FAR, &torque, out))
+    ERROR(SWING_UP, acrobot_swing_up_torque(swing_up, &FAR, &torque, out)) \
+    ERROR(ESTIMATOR, acrobot_estimator_correct(estimator, INF, 0, out)) \
+    ERROR(ESTIMATOR, acrobot_estimator_predict(estimator, INF, out)) \
+    RESULT(ESTIMATOR, acrobot_state_t, acrobot_estimator_state(estimator, out)) \
+    RESULT(ESTIMATOR, acrobot_state_t, acrobot_estimator_state_std(estimator, out)) \
+    ERROR(PARAMETERS, acrobot_parameter_estimator_correct(parameters, 0, INF, out)) \
+    ERROR(PARAMETERS, acrobot_parameter_estimator_predict(parameters, INF, out)) \
+    RESULT(PARAMETERS, acrobot_state_t, acrobot_parameter_estimator_state(parameters, out)) \
+    RESULT(PARAMETERS, acrobot_state_t, acrobot_parameter_estimator_state_std(parameters, out)) \
+    RESULT(PARAMETERS, acrobot_params_t, acrobot_parameter_estimator_params(parameters, out)) \
+    ERROR(REGRESSION, acrobot_regression_add(regression, SAMPLES, COUNT, 0, 9.8, 1, 1, out)) \
+    RESULT(REGRESSION, acrobot_fit_t, acrobot_regression_fit(regression, out)) \
+    RESULT(CONTROLLER, float, acrobot_controller_tick(controller, 1, 2, out, NULL)) \
+    RESULT(CONTROLLER, acrobot_state_t, acrobot_controller_state(controller, out)) \
+    RESULT(CONTROLLER, acrobot_params_t, acrobot_controller_params(controller, out)) \
+    BEGIN(REPLANNER, acrobot_replanner_exchange(replanner, &a_controller)) \
+    BEGIN(REPLANNER, acrobot_replanner_work(replanner))
 
 struct call {
     int holder, optional, status;
@@ -121,11 +140,15 @@ static acrobot_status_t call(int index, void *holder, void *pointer)
     acrobot_batch_t *batch = (acrobot_batch_t *)holder;
     acrobot_planner_t *planner = (acrobot_planner_t *)holder;
     acrobot_swing_up_t *swing_up = (acrobot_swing_up_t *)holder;
-    acrobot_step_model_t model;
+    acrobot_estimator_t *estimator = (acrobot_estimator_t *)holder;
+    acrobot_parameter_estimator_t *parameters = (acrobot_parameter_estimator_t *)holder;
+    acrobot_regression_t *regression = (acrobot_regression_t *)holder;
+    acrobot_controller_t *controller = (acrobot_controller_t *)holder;
+    acrobot_replanner_t *replanner = (acrobot_replanner_t *)holder;
     acrobot_step_t step;
-    acrobot_state_t x;
     float torque;
     size_t length;
+    bool holds;
 #define CALL(holder, type, optional, status, ...) \
     if (index-- == 0) { \
         type *out = (type *)pointer; \
@@ -150,9 +173,9 @@ static void expect(int index, void *holder, void *out, int status)
 #define MARGIN 192
 #define SIZE ACROBOT_BATCH_OWN_SIZE(COUNT)
 // The most that a holder has.
-#define MOST (SIZE > ACROBOT_PLANNER_SIZE ? SIZE : ACROBOT_PLANNER_SIZE)
+#define MOST ACROBOT_CONTROLLER_SIZE
 ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t arena[MARGIN + MOST + MARGIN];
-ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t other[MOST], spare[MARGIN];
+ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t other[MOST], spare[2 * MARGIN];
 static uint8_t saved[MOST];
 static uint8_t *const held = arena + MARGIN;
 
@@ -162,13 +185,31 @@ static void *hold(int holder)
     acrobot_batch_t *batch;
     acrobot_problem_t problem;
     ACCEPTED(acrobot_problem_init(&problem, &PARAMS, 1, 0, NULL));
-    ACCEPTED(holder == ALONE     ? acrobot_init((acrobot_t *)memory, 42)
-             : holder == ACTIONS ? acrobot_action_space_init((acrobot_action_space_t *)memory, 42)
-             : holder == PLANNER
-                 ? acrobot_planner_init((acrobot_planner_t *)memory, &problem, NULL)
-             : holder == SWING_UP
-                 ? acrobot_swing_up_init((acrobot_swing_up_t *)memory, &PARAMS, 1, NULL)
-                 : acrobot_batch_init(memory, SIZE, COUNT, 0, true, 42, &batch));
+    switch (holder) {
+    case ALONE: ACCEPTED(acrobot_init((acrobot_t *)memory, 42)); break;
+    case ACTIONS:
+        ACCEPTED(acrobot_action_space_init((acrobot_action_space_t *)memory, 42));
+        break;
+    case BATCH: ACCEPTED(acrobot_batch_init(memory, SIZE, COUNT, 0, true, 42, &batch)); break;
+    case PLANNER:
+        ACCEPTED(acrobot_planner_init((acrobot_planner_t *)memory, &problem, NULL));
+        break;
+    case SWING_UP:
+        ACCEPTED(acrobot_swing_up_init((acrobot_swing_up_t *)memory, &PARAMS, 1, NULL));
+        break;
+    case ESTIMATOR:
+        ACCEPTED(acrobot_estimator_init((acrobot_estimator_t *)memory, &PARAMS, &NOISE, NULL));
+        break;
+    case PARAMETERS:
+        ACCEPTED(acrobot_parameter_estimator_init((acrobot_parameter_estimator_t *)memory, &PARAMS,
+                                                  &DOUBT, &NOISE, NULL));
+        break;
+    case REGRESSION: ACCEPTED(acrobot_regression_init((acrobot_regression_t *)memory)); break;
+    case CONTROLLER:
+        ACCEPTED(acrobot_controller_init((acrobot_controller_t *)memory, &SETTINGS, NULL));
+        break;
+    default: ACCEPTED(acrobot_replanner_init((acrobot_replanner_t *)memory, &SETTINGS, NULL));
+    }
     __builtin_memcpy(saved, held, MOST);
     return memory;
 }
@@ -217,25 +258,6 @@ static void pointers(void)
     }
 }
 
-static acrobot_error_t error;
-
-// Whether a number was rejected with this message, up to its value.
-static void expect_message(acrobot_status_t status, const char *message)
-{
-    const char *parts[] = {error.name, " must be ", error.rule, ", got "}, *at = message;
-    CHECK(status == ACROBOT_ERROR_OUT_OF_RANGE);
-    for (int i = 0; i < 4; i++) {
-        for (const char *part = parts[i]; *part != 0; part++, at++) {
-            if (*part != *at) {
-                print(message);
-                print(" is not what the error says\n");
-                failures++;
-                return;
-            }
-        }
-    }
-}
-
 #define params_rejects(message, set) \
     params = PARAMS; \
     set; \
@@ -262,9 +284,9 @@ static void expect_message(acrobot_status_t status, const char *message)
 // Each of these calls is rejected and leaves all bytes of the acrobot as they were.
 static void arguments_of_an_acrobot(void)
 {
-    acrobot_t *acrobot = (acrobot_t *)hold(ALONE), weightless = *acrobot;
+    acrobot_t *acrobot = (acrobot_t *)hold(ALONE);
     acrobot_step_t step;
-    acrobot_state_t state, x;
+    acrobot_state_t state;
     acrobot_params_t params = PARAMS;
     static acrobot_draws_t draws;
     acrobot_reset_options_t options = {NULL, 0, NULL};
@@ -288,63 +310,7 @@ static void arguments_of_an_acrobot(void)
     draws.gravity.kind = 4;
     expect_message(acrobot_draw_params(acrobot, &draws, &error), "kind must be from 0 to 3, got ");
     CHECK(error.value == 4);
-    REJECTED(NULL, acrobot_deviation_from(acrobot, NULL, &x));
-    REJECTED(OUT_OF_RANGE, acrobot_deviation_from(acrobot, &FAR, &x));
-    REJECTED(NULL, acrobot_regulator(acrobot, NULL, &ONES, 1, &x, &error));
-    REJECTED(NULL, acrobot_regulator(acrobot, &REST, NULL, 1, &x, &error));
-    expect_message(
-        acrobot_regulator(acrobot, &ONES, &ONES, 1, &x, &error),
-        "target must be in equilibrium: at rest, accelerating at most 0.25 % of a fall, got ");
-    expect_message(acrobot_regulator(acrobot, &REST, &NEGATIVE, 1, &x, &error),
-                   "q.theta2 must be finite and at least 0, got ");
-    // Without gravity and weights nothing brings the acrobot back.
-    params = PARAMS;
-    params.gravity = 0;
-    ACCEPTED(acrobot_set_params(&weightless, &params, NULL));
-    expect_message(
-        acrobot_regulator(&weightless, &REST, &REST, 1, &x, &error),
-        "gain must be finite; target, dt, gravity and weights allow no regulator, got ");
     CHECK(same(acrobot, saved, ACROBOT_SIZE));
-}
-
-// Each of these calls is rejected.
-static void arguments_of_a_planner(void)
-{
-    acrobot_planner_t *planner = (acrobot_planner_t *)hold(PLANNER);
-    acrobot_knot_t *inside = (acrobot_knot_t *)(void *)held;
-    acrobot_problem_t problem;
-    acrobot_feedback_t after;
-    size_t length;
-    float number;
-    bool holds;
-    REJECTED(NULL, acrobot_problem_init(NULL, &PARAMS, 1, 0, NULL));
-    REJECTED(NULL, acrobot_problem_init(&problem, NULL, 1, 0, NULL));
-    REJECTED(OUT_OF_RANGE, acrobot_problem_init(&problem, &PARAMS, 0, 0, NULL));
-    expect_message(acrobot_problem_init(&problem, &PARAMS, 1, INF, &error),
-                   "theta2 must be a finite number of rad, got ");
-    ACCEPTED(acrobot_problem_init(&problem, &PARAMS, 1, 0, NULL));
-    REJECTED(NULL, acrobot_planner_init(NULL, &problem, NULL));
-    REJECTED(NULL, acrobot_planner_init(planner, NULL, NULL));
-    REJECTED(OVERLAP, acrobot_planner_init(planner, &problem, (acrobot_error_t *)planner));
-    problem.cost.power = -1;
-    expect_message(acrobot_planner_init(planner, &problem, &error),
-                   "power must be finite and at least 0 per J, got ");
-    REJECTED(NULL, acrobot_planner_plan(planner, &REST, 2, 4, NULL, COUNT, &length, NULL));
-    REJECTED(OVERLAP, acrobot_planner_plan(planner, &REST, 2, 4, inside, 1, &length, NULL));
-    REJECTED(OVERLAP, acrobot_planner_improve(planner, &REST, 2, inside, 1, &number, NULL));
-    REJECTED(OUT_OF_RANGE, acrobot_planner_holds_from(planner, &FAR, &holds));
-    ACCEPTED(acrobot_planner_feedback(planner, &after));
-    REJECTED(OUT_OF_RANGE, acrobot_plan_torque(knots, COUNT, &after, 0, &FAR, &number));
-    REJECTED(NULL, acrobot_plan_torque(NULL, COUNT, &after, 0, &REST, &number));
-    REJECTED(NULL, acrobot_plan_torque(knots, COUNT, NULL, 0, &REST, &number));
-    REJECTED(NULL, acrobot_plan_torque(knots, COUNT, &after, 0, NULL, &number));
-    REJECTED(NULL, acrobot_plan_torque(knots, COUNT, &after, 0, &REST, NULL));
-    CHECK(same(planner, saved, sizeof *planner));
-    expect_message(acrobot_planner_plan(planner, &REST, 2, 4, knots, COUNT, &length, &error),
-                   "tries must be enough to find a plan, got ");
-    knots[0].torque = INF;
-    expect_message(acrobot_planner_improve(planner, &UP, 2, knots, COUNT, &number, &error),
-                   "cost must be finite in each element, got ");
 }
 
 static void a_new_batch(void)
@@ -422,10 +388,10 @@ int main(void)
     reversed.length1.kind = ACROBOT_DRAW_UNIFORM;
     reversed.length1.low = 2;
     reversed.length1.high = 1;
+    ACCEPTED(acrobot_controller_init(&a_controller, &SETTINGS, NULL));
     holders();
     pointers();
     arguments_of_an_acrobot();
-    arguments_of_a_planner();
     a_new_batch();
     arguments_of_a_batch();
     CHECK(same_text(acrobot_status_text(ACROBOT_OK), "no error"));

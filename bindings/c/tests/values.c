@@ -216,10 +216,11 @@ static void drawn_parameters(void)
 static void controllers(void)
 {
     static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1315927f, 0, 0, 0},
-                                 FAST = {0, 0, 1, 0};
+                                 FAST = {0, 0, 1, 0}, SLANTED = {3.1f, 0, 0, 0};
     // In units of the machine these are 1: T² is 4.5 kg m² by 24.6 N m.
-    static const acrobot_state_t WEIGHTS = {1, 1, 4.5f / 24.6f, 4.5f / 24.6f};
-    acrobot_knot_t knot = {HANGING, 2, HANGING, {0, 0}};
+    static const acrobot_weights_t WEIGHTS = {
+        {{1}, {0, 1}, {0, 0, 4.5f / 24.6f}, {0, 0, 0, 4.5f / 24.6f}}, 1 / 25.f};
+    acrobot_knot_t knot = {HANGING, 2, HANGING, {0, 0}}, improved;
     acrobot_t acrobot;
     acrobot_planner_t planner;
     acrobot_swing_up_t swing_up;
@@ -227,16 +228,18 @@ static void controllers(void)
     acrobot_problem_t problem;
     acrobot_feedback_t after;
     acrobot_step_model_t model;
-    acrobot_state_t x;
+    acrobot_lqr_t lqr;
+    acrobot_state_t state, x;
     acrobot_step_t step;
     float number, torque;
     bool holds;
     ACCEPTED(acrobot_init(&acrobot, 0));
     ACCEPTED(acrobot_params(&acrobot, &params));
-    ACCEPTED(acrobot_linearize_step(&acrobot, &UPRIGHT, 0, &model, NULL));
+    ACCEPTED(acrobot_linearize_step(&params, &UPRIGHT, 0, &model, NULL));
     ACCEPTED(acrobot_set_state(&acrobot, &LEANING, NULL));
     ACCEPTED(acrobot_step_torque(&acrobot, .01f, &step, NULL));
-    ACCEPTED(acrobot_deviation_from(&acrobot, &UPRIGHT, &x));
+    ACCEPTED(acrobot_state(&acrobot, &state));
+    ACCEPTED(acrobot_deviation_from(&state, &UPRIGHT, &x, NULL));
     CHECK(near(x.theta2, .01f * (model.b[1] - model.a[1][0])));
 
     // The cost of 2 N m for 0.2 s, before the torque is improved: 0.1 / T by the square of 5 N m.
@@ -244,25 +247,35 @@ static void controllers(void)
     CHECK(near(problem.cost.torque, .0093524f) && problem.cost.height == 2);
     problem.cost.below = problem.cost.arrival = 0;
     ACCEPTED(acrobot_planner_init(&planner, &problem, NULL));
-    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 0, &knot, 1, &number, NULL));
+    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 0, &knot, &improved, 1, &number, NULL));
     CHECK(near(number, .8f * problem.cost.torque));
-    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 9, &knot, 1, &number, NULL));
+    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 9, &improved, &knot, 1, &number, NULL));
     CHECK(near(number, 0) && near(knot.torque, 0));
 
     // After a plan, and without one, the regulator holds.
-    ACCEPTED(acrobot_regulator(&acrobot, &UPRIGHT, &WEIGHTS, 1 / 25.f, &x, NULL));
+    ACCEPTED(acrobot_regulator(&params, &UPRIGHT, 0, &WEIGHTS, &lqr, NULL));
     ACCEPTED(acrobot_planner_feedback(&planner, &after));
-    ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 1, &LEANING, &torque));
-    CHECK(near(torque, .01f * x.theta1));
+    ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 1, &LEANING, &torque, NULL));
+    CHECK(near(torque, .01f * lqr.gain.theta1));
     ACCEPTED(acrobot_swing_up_init(&swing_up, &params, 5, NULL));
     ACCEPTED(acrobot_swing_up_torque(&swing_up, &LEANING, &number, NULL));
     CHECK(number == torque);
-    ACCEPTED(acrobot_planner_holds_from(&planner, &LEANING, &holds));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &LEANING, &holds, NULL));
     CHECK(holds);
-    ACCEPTED(acrobot_planner_holds_from(&planner, &HANGING, &holds));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &HANGING, &holds, NULL));
     CHECK(!holds);
+    // Where link 2 would turn faster than its bound.
+    params.dt = .02f;
+    params.max_velocity2 = .5f;
+    ACCEPTED(acrobot_problem_init(&problem, &params, 10, 0, NULL));
+    ACCEPTED(acrobot_planner_init(&planner, &problem, NULL));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &SLANTED, &holds, NULL));
+    CHECK(!holds);
+    ACCEPTED(acrobot_planner_with_velocity_clamp(&planner));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &SLANTED, &holds, NULL));
+    CHECK(holds);
     knot.gain.dtheta1 = 2;
-    ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 0, &FAST, &torque));
+    ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 0, &FAST, &torque, NULL));
     CHECK(near(torque, knot.torque - 2));
 
     // With a bent elbow the motor holds link 2.
