@@ -197,7 +197,7 @@ fn excerpts_are_in_their_files() {
         ("docs/control.md", "```rust,ignore (", 2),
         ("docs/real.md", "```rust,ignore (", 2),
         ("docs/embedded.md", "```rust,ignore (", 2),
-        ("docs/c.md", "```c (", 8),
+        ("docs/c.md", "```c (", 11),
     ] {
         let page = text_of(page);
         let blocks: Vec<&str> = page.split(fence).skip(1).collect();
