@@ -7,7 +7,7 @@ use core::{ptr, slice};
 use acrobot::Fast;
 use acrobot::arithmetic::Damped;
 use acrobot::batch::StepBuffers;
-use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, Input, LaneParams, OwnParams};
+use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams};
 use acrobot::numpy::Pcg64;
 use acrobot::task::AnyTask;
 
@@ -225,7 +225,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
     results: *const acrobot_batch_results_t,
     count: usize,
 ) -> acrobot_status_t {
-    status(|| step(batch, actions, results, count))
+    step(batch, Inputs::Actions(actions), results, count)
 }
 
 /// As acrobot_batch_step, with any finite torques, N m.
@@ -236,41 +236,59 @@ pub unsafe extern "C" fn acrobot_batch_step_torque(
     results: *const acrobot_batch_results_t,
     count: usize,
 ) -> acrobot_status_t {
-    status(|| step(batch, torques, results, count))
+    step(batch, Inputs::Torques(torques), results, count)
 }
 
-unsafe fn step<I: Input<f32>>(
+enum Inputs {
+    Actions(*const u8),
+    Torques(*const f32),
+}
+
+unsafe fn step(
     batch: *mut acrobot_batch_t,
-    inputs: *const I,
+    inputs: Inputs,
     results: *const acrobot_batch_results_t,
     count: usize,
-) -> Result<(), Rejected> {
-    let placed = counted(batch, count)?;
-    let pointers = Span::new(results, 1);
-    let results = read(results)?;
-    let inputs = array(inputs.cast_mut(), count)?;
-    let rewards = array(results.rewards, count)?;
-    let terminated = array(results.terminated, count)?;
-    let truncated = array(results.truncated, count)?;
-    let observations = optional(results.observations.cast(), count)?;
-    let finals = optional(results.final_observations.cast(), count)?;
-    check_apart(&[
-        memory_of(batch, &placed.batch),
-        pointers,
-        Span::of(inputs),
-        Span::of(rewards),
-        Span::of(terminated),
-        Span::of(truncated),
-        Span::of(observations),
-        Span::of(finals),
-    ])?;
-    // They may contain bytes that no `bool` has.
-    results.terminated.write_bytes(0, count);
-    results.truncated.write_bytes(0, count);
-    let mut buffers = StepBuffers::new(&mut *rewards, &mut *terminated, &mut *truncated);
-    buffers.observations = observations.as_mut();
-    buffers.final_observations = finals.as_mut();
-    Ok(placed.batch.step_into(&*inputs, buffers)?)
+) -> acrobot_status_t {
+    status(|| {
+        let placed = counted(batch, count)?;
+        let pointers = Span::new(results, 1);
+        let results = read(results)?;
+        let inputs_span = match inputs {
+            Inputs::Actions(actions) => Span::of(array(actions.cast_mut(), count)?),
+            Inputs::Torques(torques) => Span::of(array(torques.cast_mut(), count)?),
+        };
+        let rewards = array(results.rewards, count)?;
+        let terminated = array(results.terminated, count)?;
+        let truncated = array(results.truncated, count)?;
+        let observations = optional(results.observations.cast(), count)?;
+        let finals = optional(results.final_observations.cast(), count)?;
+        check_apart(&[
+            memory_of(batch, &placed.batch),
+            pointers,
+            inputs_span,
+            Span::of(rewards),
+            Span::of(terminated),
+            Span::of(truncated),
+            Span::of(observations),
+            Span::of(finals),
+        ])?;
+        // They may contain bytes that no `bool` has.
+        results.terminated.write_bytes(0, count);
+        results.truncated.write_bytes(0, count);
+        let mut buffers = StepBuffers::new(&mut *rewards, &mut *terminated, &mut *truncated);
+        buffers.observations = observations.as_mut();
+        buffers.final_observations = finals.as_mut();
+        match inputs {
+            Inputs::Actions(actions) => {
+                placed.batch.step_into(slice::from_raw_parts(actions, count), buffers)?;
+            }
+            Inputs::Torques(torques) => {
+                placed.batch.step_into(slice::from_raw_parts(torques, count), buffers)?;
+            }
+        }
+        Ok(())
+    })
 }
 
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-// Gymnasium's Acrobot in C and C++: one or a batch, and plans, in single precision.
+// Gymnasium's Acrobot in C and C++: one or a batch, and control, in single precision.
 //
 // - You provide the memory, and may reuse it at any time. No function allocates, aborts or has
 //   global state. Threads and interrupts may use different acrobots at the same time.
@@ -7,7 +7,7 @@
 //   reset, may be null. The functions report null, misaligned pointers and zeroed memory, but not
 //   freed memory.
 // - Arguments, and arrays of a struct, must not overlap. The functions report arrays that overlap,
-//   and a result or error that would overwrite the acrobot, batch, planner or swing-up.
+//   and a result or error that would overwrite the acrobot, or what else an `_init` has made.
 // - Arrays have `count` elements, in a batch one for each acrobot; `index` and `step` count from 0.
 // - Numbers are in SI units.
 
