@@ -198,20 +198,12 @@ fn the_files_that_the_pages_name_exist() {
 #[test]
 fn excerpts_are_in_their_files() {
     let unindented = |text: &str| text.lines().map(str::trim_start).collect::<Vec<_>>().join("\n");
-<<<<<<< HEAD
     for (page, fence) in [
         ("docs/control.md", "```rust,ignore ("),
         ("docs/real.md", "```rust,ignore ("),
         ("docs/embedded.md", "```rust,ignore ("),
         ("docs/c.md", "```c ("),
         ("docs/c.md", "```cmake ("),
-=======
-    for (page, fence, count) in [
-        ("docs/control.md", "```rust,ignore (", 2),
-        ("docs/real.md", "```rust,ignore (", 2),
-        ("docs/embedded.md", "```rust,ignore (", 2),
-        ("docs/c.md", "```c (", 11),
->>>>>>> h-ctl
     ] {
         let text = text_of(page);
         let blocks: Vec<&str> = text.split(fence).skip(1).collect();
