@@ -56,3 +56,22 @@ pub(super) fn estimated<T>(numbers: [T; 21]) -> [T; PARAMETERS] {
     let [.., viscous1, viscous2, coulomb1, coulomb2, rotor] = others;
     [mass1, mass2, length1, inertia1, inertia2, viscous1, viscous2, coulomb1, coulomb2, rotor]
 }
+
+/// What is known of a parameter. Covariances have its given deviation as their unit.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "S: serde::Serialize, [S; K]: serde::Serialize",
+        deserialize = "S: serde::Deserialize<'de>, [S; K]: serde::Deserialize<'de>"
+    ))
+)]
+pub(super) struct Parameter<S, const K: usize> {
+    pub(super) deviation: S,
+    /// The smallest and the largest number.
+    pub(super) limits: [S; 2],
+    /// The covariances with the state, and with each parameter.
+    pub(super) with_state: [S; 4],
+    pub(super) with_params: [S; K],
+}

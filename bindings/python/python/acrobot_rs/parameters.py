@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import copy
 import dataclasses
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from gymnasium import logger, spaces
 
 from acrobot_rs._native import BOUND, Acrobot, Batch
-from acrobot_rs.arrays import LARGEST, must_be
+from acrobot_rs.arrays import LARGEST, independent, must_be
 
 
 @dataclasses.dataclass(frozen=True)
@@ -25,6 +24,8 @@ class Uniform:
     >>> envs = acrobot_rs.AcrobotVectorEnv(1024, LINK_MASS_1=acrobot_rs.Uniform(0.8, 1.2))
     """
 
+    _KIND: ClassVar = "uniform"
+
     low: Any
     high: Any
 
@@ -32,6 +33,8 @@ class Uniform:
 @dataclasses.dataclass(frozen=True)
 class LogUniform:
     """A parameter whose logarithm each reset draws uniformly. ``low`` is above 0."""
+
+    _KIND: ClassVar = "log_uniform"
 
     low: float
     high: float
@@ -43,6 +46,8 @@ class Normal:
 
     ``mean`` and ``std`` are those before the truncation. ``mean`` is between the bounds.
     """
+
+    _KIND: ClassVar = "normal"
 
     mean: float
     std: float
@@ -191,9 +196,7 @@ class Parameters:
                         new.seed(int(current.np_random.integers(2**32)))
                         super().__setattr__(space, new)
 
-    def __copy__(self) -> Parameters:
-        """As ``copy.deepcopy``: two objects with the same states would be no copies."""
-        return copy.deepcopy(self)
+    __copy__ = independent
 
     def _warn_of_no_render_mode(self) -> None:
         what = 'it was made without a render mode, such as render_mode="rgb_array"'
