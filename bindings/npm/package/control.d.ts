@@ -58,27 +58,42 @@ export function regulator(
  */
 export interface Cost {
   /**
-   * Q of xᵀ Q x for the deviation x from the target, symmetric: 1/(rad² s), 1/rad² and s/rad².
-   * Default: zeros.
+   * Q of xᵀ Q x, for the deviation x from the target, by rows: 1/(rad² s), 1/rad² and s/rad²;
+   * symmetric and positive semidefinite. Default 0.
    */
   q: Matrix;
-  /** The same of the state after the plan: 1/rad², s/rad² and s²/rad². Default: zeros. */
+  /** The same of the state after the plan: 1/rad², s/rad² and s²/rad². Default 0. */
   qf: Matrix;
-  /** Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s. Default: [0, 0]. */
+  /**
+   * Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s: of x² where it is
+   * small. Default 0.
+   */
   angles: readonly [number, number];
-  /** Of the squared difference of the torque from that of the target. Default: 0.1 / (T u²). */
+  /**
+   * R: of the square of the torque's difference from that which holds the target, 1/((N m)² s).
+   * Default 0.1 / (T u²).
+   */
   torque: number;
-  /** Of the square of the torque's change from step to step, 1/(N m)². Default: 0. */
+  /** Of the square of the torque's change from one step to the next, 1/(N m)². Default 0. */
   torqueChange: number;
-  /** Of the absolute value of the motor's power, 1/J. Default: 0. */
+  /** Of the absolute value of the motor's power, 1/J. Default 0. */
   power: number;
-  /** Of the time that the tip is below `height`, 1/s. Default: 0.4 / T. */
+  /** Of the time that the tip is below `height`, 1/s. Default 0.4 / T. */
   below: number;
-  /** Height of the tip above the fixed joint, m. Default: that of the target's tip. */
+  /**
+   * The height of the tip above the fixed joint, m, from which on `below` costs nothing. Default
+   * that of the target.
+   */
   height: number;
-  /** `below` costs half so far below `height`, m; above 0. Default: a tenth of the length. */
+  /**
+   * `below` costs half where the tip is so far below `height`, m; above 0. Default a tenth of both
+   * lengths.
+   */
   margin: number;
-  /** Of the distance at the end from what the regulator holds. Default: 20. */
+  /**
+   * Of ln(1 + e) for the state after the plan, where e is 1 at the border of the region in which
+   * the regulator holds. Default 20.
+   */
   arrival: number;
 }
 

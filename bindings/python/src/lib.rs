@@ -66,6 +66,7 @@ fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<Py
 
 /// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both
 /// moments of inertia.
+// derive.py writes the names.
 const NAMES: [&str; 21] = [
     "LINK_LENGTH_1",
     "LINK_LENGTH_2",

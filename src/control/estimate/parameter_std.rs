@@ -16,7 +16,7 @@ pub(super) const PARAMETERS: usize = 10;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(C)] // for bindings/abi
+#[repr(C)] // for bindings/abi, whose derive.py copies the fields to other languages
 pub struct ParameterStd<S = f64> {
     /// Of the mass of link 1, kg.
     pub mass1: S,
@@ -28,8 +28,9 @@ pub struct ParameterStd<S = f64> {
     pub inertia1: S,
     /// Of the moment of inertia of link 2, kg m².
     pub inertia2: S,
-    /// Of the viscous friction of joint 1, N m s/rad. This and the following ones must be 0 in an
-    /// arithmetic without friction.
+    /// Of the viscous friction of joint 1, N m s/rad.
+    ///
+    /// This and the following ones must be 0 in an arithmetic without friction.
     pub damping1: S,
     /// Of the viscous friction of joint 2, N m s/rad.
     pub damping2: S,

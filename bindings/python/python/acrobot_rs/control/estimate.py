@@ -14,10 +14,19 @@ from acrobot_rs import _native
 from acrobot_rs.arrays import finite, independent, must_be
 from acrobot_rs.control.model import Env, Floats, acrobot_of
 
-#: The parameters that an estimator can find, in the order of the native part.
+#: The parameters that an estimator can find, in the order of the native part: derive.py writes
+#: them.
 _ESTIMATED = (
-    *("LINK_MASS_1", "LINK_MASS_2", "LINK_LENGTH_1", "LINK_MOI_1", "LINK_MOI_2"),
-    *("DAMPING_1", "DAMPING_2", "COULOMB_1", "COULOMB_2", "ROTOR"),
+    "LINK_MASS_1",
+    "LINK_MASS_2",
+    "LINK_LENGTH_1",
+    "LINK_MOI_1",
+    "LINK_MOI_2",
+    "DAMPING_1",
+    "DAMPING_2",
+    "COULOMB_1",
+    "COULOMB_2",
+    "ROTOR",
 )
 
 
