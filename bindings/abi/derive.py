@@ -5,6 +5,7 @@ The sources are comments of the crate, from which C's structs follow, and the he
 """
 
 import json
+import math
 import re
 import subprocess
 import sys
@@ -134,46 +135,48 @@ header = cbindgen.stdout.decode()
 write("bindings/c/include/acrobot.h", header)
 
 # The layout of C's structs in wasm32, and assertions for the compiler that it is this.
-defines = dict(reversed(re.findall(r"#define (\w+) (\d+)\n", header)))
 sizes, structs = {kind: (size, size) for kind, size in BYTES.items()}, {}
-STRUCT = r"struct (?:ACROBOT_ALIGNED\((\d+)\) )?{(.*?)\n} (\w+);"
-for least, body, name in re.findall(STRUCT, header, re.DOTALL):
-    end, most, structs[name] = 0, int(least or 1), {}
+for body, name in re.findall(r"typedef struct {(.*?)\n} (\w+);", header, re.DOTALL):
+    end, most, structs[name] = 0, 1, {}
     for kind, star, field, counts in re.findall(r"\n  (?:const )?(\w+) (\*?)(\w+)(.*);", body):
-        kind = "pointer" if star else kind
-        size, align = sizes[kind]
-        for count in re.findall(r"\w+", counts):
-            size *= int(defines.get(count, count))
+        size, align = sizes["pointer" if star else kind]
+        size *= math.prod(map(int, re.findall(r"\d+", counts)))
         start = end + -end % align
         end, most = start + size, max(most, align)
-        structs[name][field] = start, size, 1 if kind in ("bool", "char") else 4
+        structs[name][field] = start, size
     sizes[name] = end + -end % most, most
-homes = sorted(path for path in (ROOT / ABI).glob("*.rs") if "struct acro" in path.read_text())
+files = [(path.stem, path.read_text()) for path in sorted((ROOT / ABI).glob("*.rs"))]
+homes = [home for home, text in files if any(f"struct {name} {{" in text for name in structs)]
 lines = ["//! The layout that derive.py computes for JavaScript.", "", "use core::mem::offset_of;"]
-lines += ["", *(f"use crate::{home.stem}::*;" for home in homes), "", "const _: () = {"]
+lines += ["", *(f"use crate::{home}::*;" for home in homes), "", "const _: () = {"]
 for name, fields in structs.items():
     lines += [f"    assert!(size_of::<{name}>() == {sizes[name][0]});"]
-    starts = [(field, start) for field, (start, *_) in fields.items() if field != "bytes"]
-    lines += [f"    assert!(offset_of!({name}, {field}) == {start});" for field, start in starts]
+    for field, (start, _) in fields.items():
+        lines += [f"    assert!(offset_of!({name}, {field}) == {start});"]
 write(f"{ABI}layout.rs", "\n".join([*lines, "};", ""]))
 
 # npm.
 draws = [name.lower() for name in re.findall(r"#define ACROBOT_DRAW_(\w+)", header)]
-lists = {"PARAMS": params, "WEIGHTS": costs, "PARAMETER_STD": stds}
-lists = {name: [field for field, *_ in fields] for name, fields in lists.items()}
-lines = ["// derive.py writes this file: names and places of what acrobot.h has in C.", ""]
-for name, fields in (lists | {"DRAWS": draws, "TASKS": tasks}).items():
-    quoted = ", ".join(f'"{in_javascript(field)}"' for field in fields)
-    lines += [f"export const {name} = [", *wrapped(f"{quoted},", "  "), "];", ""]
-lines += ["/** Bytes, and of each field its first word and words, or byte and bytes of text. */"]
+lines = ["// derive.py writes this file: what acrobot.h says, with the layout in wasm32.", ""]
+for name, values_of in {"TASKS": tasks, "DRAWS": draws}.items():
+    lines += [f"export const {name} = {json.dumps([*map(in_javascript, values_of)])};"]
+lines += ["", "/** Bytes. */", "export const SIZES = {"]
+# The first definition of a name is that of wasm32.
+for name, size in reversed(
+    dict(re.findall(r"#define ACROBOT_(?:(\w+)_)?SIZE (\d+)", header)[::-1]).items()
+):
+    lines += [f"  {in_javascript(name.lower()) or 'acrobot'}: {size},"]
+lines += ["};", "", "/** The first word of 32 bits and the words. `flags` are two bools. */"]
 lines += ["export const STRUCTS = {"]
 for name, fields in structs.items():
-    places = {"size": sizes[name][0]}
-    for field, (start, size, unit) in fields.items():
-        places[in_javascript(field)] = [start // unit, size // unit]
-    quoted = ", ".join(
-        f"{field}:\xa0{place}" for field, place in places.items() if field != "bytes"
-    )
+    places = {}
+    for field, (start, size) in fields.items():
+        place = [start // 4, -(-size // 4)]
+        if place in places.values():
+            places.popitem()
+            field = "flags"
+        places[in_javascript(field)] = place
+    quoted = ", ".join(f"{field}:\xa0{place}" for field, place in places.items())
     lines += [f"  {name}: {{", *wrapped(f"{quoted},", "    "), "  },"]
 write(f"{NPM}layout.js", "\n".join([*lines, "};", ""]))
 
