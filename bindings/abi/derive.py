@@ -160,6 +160,11 @@ draws = [name.lower() for name in re.findall(r"#define ACROBOT_DRAW_(\w+)", head
 lines = ["// derive.py writes this file: what acrobot.h says, with the layout in wasm32.", ""]
 for name, values_of in {"TASKS": tasks, "DRAWS": draws}.items():
     lines += [f"export const {name} = {json.dumps([*map(in_javascript, values_of)])};"]
+for name, kind in {"STATUS": "status", "KINDS": "error_kind"}.items():
+    body = re.search(rf"enum {{([^}}]*)}} acrobot_{kind}_t;", header)[1]
+    numbers = re.findall(r"ACROBOT_(?:ERROR_)?(\w+) = (\d+)", body)
+    quoted = ", ".join(f"{in_javascript(each.lower())}:\xa0{n}" for each, n in numbers)
+    lines += [f"export const {name} = {{", *wrapped(f"{quoted},", "  "), "};"]
 lines += ["", "/** Bytes. */", "export const SIZES = {"]
 # The first definition of a name is that of wasm32.
 for name, size in reversed(

@@ -172,8 +172,11 @@ impl<S: Real> Params<S> {
     }
 }
 
+/// How many numbers the parameters are.
+pub(crate) const NUMBERS: usize = 21;
+
 /// The name, unit and range of each number.
-pub(crate) const FIELDS: [(&str, &str, Range); 21] = {
+pub(crate) const FIELDS: [(&str, &str, Range); NUMBERS] = {
     use Range::{AboveZero, AtLeastNormalF32, AtLeastZero, Finite};
     [
         ("length1", "m", AboveZero),
@@ -199,20 +202,20 @@ pub(crate) const FIELDS: [(&str, &str, Range); 21] = {
         ("rotor", "kg m²", Finite),
     ]
 };
-/// The fields from here on must be 0 in an arithmetic without friction.
-const OF_FRICTION: usize = 16;
+/// The last fields, from here on, must be 0 in an arithmetic without friction.
+const OF_FRICTION: usize = NUMBERS - 5;
 
 impl<S: Copy> Params<S> {
     /// The name and the value of each number, in the order of the fields.
     #[must_use]
-    pub fn numbers(&self) -> [(&'static str, S); 21] {
+    pub fn numbers(&self) -> [(&'static str, S); NUMBERS] {
         let mut numbers = *self;
         let mut names = FIELDS.into_iter();
         numbers.numbers_mut().map(|number| (names.next().map_or("", |(name, ..)| name), *number))
     }
 
     /// Each number, to change it, in the order of the fields.
-    pub const fn numbers_mut(&mut self) -> [&mut S; 21] {
+    pub const fn numbers_mut(&mut self) -> [&mut S; NUMBERS] {
         let [negative, zero, positive] = &mut self.torques;
         [
             &mut self.length1,

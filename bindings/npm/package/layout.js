@@ -2,6 +2,15 @@
 
 export const TASKS = ["gymnasium", "swingup", "balance"];
 export const DRAWS = ["fixed", "uniform", "logUniform", "normal"];
+export const STATUS = {
+  ok: 0, null: 1, misaligned: 2, bufferTooSmall: 3, notInitialized: 4, moved: 5, unknownAction: 6,
+  outOfRange: 7, wrongCount: 8, noSuchIndex: 9, overlap: 10, damagedSnapshot: 11, otherSnapshot: 12,
+  sharedParams: 13,
+};
+export const KINDS = {
+  outOfRange: 0, notFinite: 1, notSymmetric: 2, notSemidefinite: 3, notInEquilibrium: 4,
+  notStabilizable: 5, notDetectable: 6, illConditioned: 7, noPlan: 8,
+};
 
 /** Bytes. */
 export const SIZES = {

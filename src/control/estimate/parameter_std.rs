@@ -1,5 +1,7 @@
 //! Which parameters are estimated, and how wrong they may be.
 
+use crate::physics::NUMBERS;
+
 /// The parameters that can be estimated: all on which a motion depends.
 pub(super) const PARAMETERS: usize = 10;
 
@@ -52,7 +54,7 @@ impl<S: Copy> ParameterStd<S> {
 }
 
 /// These among the numbers of the parameters.
-pub(super) fn estimated<T>(numbers: [T; 21]) -> [T; PARAMETERS] {
+pub(super) fn estimated<T>(numbers: [T; NUMBERS]) -> [T; PARAMETERS] {
     let [length1, _, mass1, mass2, _, _, inertia1, inertia2, others @ ..] = numbers;
     let [.., viscous1, viscous2, coulomb1, coulomb2, rotor] = others;
     [mass1, mass2, length1, inertia1, inertia2, viscous1, viscous2, coulomb1, coulomb2, rotor]
