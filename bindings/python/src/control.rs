@@ -42,7 +42,9 @@ pub fn compute<'py>(
                 }
             });
         }
-        Ok(results)
+        let rule = format_args!("so small that {function} is finite");
+        let infinite = results.iter().find(|x| !f64::is_finite(**x));
+        infinite.map_or(Ok(()), |x| Err(wrong("the numbers", rule, x))).map(|()| results)
     });
     Ok(PyArray1::from_vec(py, results?))
 }
