@@ -55,7 +55,11 @@ fn machines() -> Vec<(Params, Vec<[f64; 9]>)> {
 fn steps_equal_realaigyms() {
     fn check<A: Arithmetic<Scalar = f64>>() {
         for (params, steps) in machines() {
-            assert_eq!(steps.len(), 20);
+            assert_eq!(
+                steps.len(),
+                20,
+                "steps of each machine in tests/data/realaigym.txt: edit this count"
+            );
             for [a, b, c, d, torque, after @ ..] in steps {
                 let mut pendulum = Pendulum::<A>::new(params, State::from([a, b, c, d])).unwrap();
                 pendulum.step(torque).unwrap();

@@ -15,7 +15,7 @@ use rand_core::Rng;
 fn rows(kind: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     let rows = lines(include_str!("data/seeds.txt"), kind);
     let rows: Vec<Vec<_>> = rows.map(|row| row.split(' ').collect()).collect();
-    assert!(rows.len() >= 20, "{} rows of {kind}", rows.len());
+    assert!(rows.len() >= 20, "tests/data/seeds.txt has {} rows of {kind}", rows.len());
     rows.into_iter()
 }
 

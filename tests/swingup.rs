@@ -39,7 +39,7 @@ fn errors<A: Arithmetic>() -> [f64; 3] {
         }
         count += 1;
     }
-    assert_eq!(count, 1000);
+    assert_eq!(count, 1000, "steps in tests/data/swingup.txt: edit this count");
     worst
 }
 

@@ -197,7 +197,7 @@ def main():
     if options.update:
         DOCUMENT.write_text("\n".join(lines) + "\n")
     elif lines != page:
-        difference = difflib.unified_diff(page, lines, "the page", "measured", n=0, lineterm="")
+        difference = difflib.unified_diff(page, lines, DOCUMENT.name, "measured", n=0, lineterm="")
         sys.exit("\n".join(difference) + "\nIf this is intended: python3 figures.py --update")
 
 

@@ -16,6 +16,7 @@ use super::storage::Storage;
 use super::vec_batch::VecBatch;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
+use crate::numpy::SeedSequence;
 use crate::physics::Params;
 use crate::snapshot::Header;
 use crate::task::{Draw, Draws, ResetBounds, Task};
@@ -87,7 +88,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         D: Deserializer<'de>,
         T: Deserialize<'de>,
     {
-        let mut batch = Self::new(0, storage).map_err(D::Error::custom)?;
+        let mut batch = Self::new(SeedSequence::new(0), storage).map_err(D::Error::custom)?;
         let mut index = 0;
         let settings = read(deserializer, |member| {
             index += 1;

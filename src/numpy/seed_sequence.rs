@@ -28,25 +28,37 @@ impl SeedSequence {
     /// `parse` on a decimal text.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
-        Self::from_words(&[seed as u32, (seed >> 32) as u32])
+        Self::pooled([seed as u32, (seed >> 32) as u32, 0, 0])
     }
 
     /// The sequence of the integer with these 32-bit digits, the lowest first.
     #[must_use]
-    #[expect(clippy::indexing_slicing, reason = "the pool has 4 words")]
-    #[inline(never)] // saves flash, as does `hash`, which it calls sixteen times
+    #[expect(clippy::indexing_slicing, reason = "the loop ends with the words")]
     pub const fn from_words(mut words: &[u32]) -> Self {
         while let [rest @ .., 0] = words {
             words = rest;
         }
+        let (mut first, mut i) = ([0; 4], 0);
+        while i < 4 && i < words.len() {
+            first[i] = words[i];
+            i += 1;
+        }
+        let mut sequence = Self::pooled(first);
+        while i < words.len() {
+            sequence.absorb(words[i]);
+            i += 1;
+        }
+        sequence
+    }
+
+    /// The sequence of four words, or fewer and zeros.
+    #[expect(clippy::indexing_slicing, reason = "the pool has 4 words")]
+    #[inline(never)] // saves flash, as does `hash`, which it calls sixteen times
+    const fn pooled(words: [u32; 4]) -> Self {
         let mut sequence = Self { pool: [0; 4], hash_multiplier: 0x43b0_d7e5, spawned: 0 };
         let mut i = 0;
         while i < 4 {
-            let mut word = 0;
-            if let [first, rest @ ..] = words {
-                (word, words) = (*first, rest);
-            }
-            sequence.pool[i] = sequence.hash(word);
+            sequence.pool[i] = sequence.hash(words[i]);
             i += 1;
         }
         let mut source = 0;
@@ -60,10 +72,6 @@ impl SeedSequence {
                 target += 1;
             }
             source += 1;
-        }
-        while let [word, rest @ ..] = words {
-            sequence.absorb(*word);
-            words = rest;
         }
         sequence
     }

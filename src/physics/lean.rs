@@ -3,8 +3,9 @@
 use super::arithmetic::Arithmetic;
 use super::friction::friction;
 use super::model::{Constants, Model};
+use super::params::Params;
 use crate::math::sealed::Sealed;
-use crate::math::{Numbers, SinCos};
+use crate::math::{Numbers, Real, SinCos};
 
 /// The determinant is a positive constant plus a square, so nothing cancels. Gymnasium's cos(θ1 −
 /// π/2) is sin θ1 here, and its cos(θ1 + θ2 − π/2) is sin(θ1 + θ2), by the addition theorem.
@@ -25,7 +26,7 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
         gravity1,
         gravity2,
         nips,
-        own: [upper, determinant, book, ..], // kg m², kg² m⁴, 1
+        own: [upper, determinant, book, dry, _], // kg m², kg² m⁴, 1; 0 without dry friction and rotor
         ..
     } = &model.constants;
     let mut coupling_cos = coupling * cos2;
@@ -38,7 +39,12 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     // The generalized forces: the negated one on θ1, and the one on θ1 + θ2.
     let mut torque = torque;
     let mut force1 = gravity1 * sin1 - coupling_sin * (dtheta_sum * dtheta_sum - nips * square);
-    if A::HAS_FRICTION {
+    // Without a branch this takes a quarter of a step of one acrobot, and 2 % of a batch's.
+    if A::HAS_FRICTION && V::IS_ONE && dry.all_abs_le(V::splat(A::Scalar::ZERO)) {
+        let Params { damping1, damping2, .. } = model.params;
+        torque = torque - damping2 * dtheta2;
+        force1 = (force1 + torque) + damping1 * dtheta1;
+    } else if A::HAS_FRICTION {
         let [(friction1, _), (friction2, _)] = friction::<A, V>(model, [dtheta1, dtheta2]);
         torque = torque - friction2;
         force1 = (force1 + torque) + friction1;

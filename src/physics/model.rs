@@ -169,7 +169,9 @@ for_f32_and_f64! {
                 Form::Lean => {
                     // Of the mass matrix where θ2 is ±π/2, kg² m⁴.
                     let determinant = link1 * link2 + tip * inertia2;
-                    [link1 + tip, determinant, 1.0 - nips, 0.0, 0.0]
+                    let Params { coulomb1, coulomb2, rotor, .. } = params;
+                    let dry = if has_friction { coulomb1 + coulomb2 + rotor.abs() } else { 0.0 };
+                    [link1 + tip, determinant, 1.0 - nips, dry, 0.0]
                 }
                 Form::Gymnasium => {
                     let [l1_squared, lc1_squared, lc2_squared] = squares;

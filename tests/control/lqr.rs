@@ -75,7 +75,8 @@ fn drakes_gain_is_found() {
 fn costs_solve_the_equation() {
     let text = text_of("tests/data/control.txt");
     let q = [10.0, 10.0, 1.0, 1.0];
-    assert_eq!(lines(&text, "continuous").count(), 120);
+    let count = lines(&text, "continuous").count();
+    assert_eq!(count, 120, "rows `continuous` in tests/data/control.txt: edit this count");
     for x in lines(&text, "continuous").map(numbers) {
         let (a, b) = (matrix(&x[..16]), vector(&x[16..]));
         let Lqr { gain, cost_to_go: p } = lqr(&LinearModel { a, b }, &diagonal(q), 1.0).unwrap();

@@ -48,7 +48,8 @@ const DAMPED: usize = 80;
 fn errors<A: Arithmetic>(first: usize) -> [f64; 3] {
     let text = text_of("tests/data/control.txt");
     let recorded = |word| lines(&text, word).skip(first).take(40);
-    assert_eq!(recorded("motion").count(), 40);
+    let count = recorded("motion").count();
+    assert_eq!(count, 40, "motions of each kind in tests/data/control.txt: record again");
     let results = ["continuous", "discrete", "motion"].map(|word| recorded(word).map(numbers));
     let [continuous, discrete, motion] = results;
     let mut worst = [0.0_f64; 3];

@@ -109,6 +109,18 @@ fn bad_input_gives_an_error_and_no_torque_that_is_not_finite() {
         assert_eq!(error.to_string(), "no plan ends upright in 3 tries");
     }
 
+    // A plan of other numbers stays as it was.
+    for (field, name) in [(0, "theta1"), (4, "torque"), (5, "gain")] {
+        let mut numbers = [0.1; 9];
+        numbers[field] = f32::NAN;
+        let [x1, x2, x3, x4, torque, k1, k2, k3, k4] = numbers;
+        let mut plan = [Knot::open(0.1); 3];
+        plan[1] = Knot::new([x1, x2, x3, x4], torque, [k1, k2, k3, k4]);
+        let before = format!("{plan:?}");
+        let error = planner.improve(State::HANGING, 3, &mut plan).unwrap_err();
+        assert_eq!((error.name(), format!("{plan:?}")), (name, before));
+    }
+
     let fast = State { dtheta1: 1e30, dtheta2: -1e30, ..State::HANGING };
     let mut planner =
         Planner::<Fast>::new(&Problem::swing_up(Params::DEFAULT, 1e38).unwrap()).unwrap();

@@ -40,7 +40,8 @@ fn gains_equal_scipys() {
         [relative(&gain, &x[39..43]), relative(cost_to_go.as_flattened(), &x[43..])]
     }
     let text = text_of("tests/data/control.txt");
-    assert_eq!(lines(&text, "lqr").count(), 32);
+    let count = lines(&text, "lqr").count();
+    assert_eq!(count, 32, "rows `lqr` in tests/data/control.txt: edit this count");
     for x in lines(&text, "lqr").map(numbers) {
         let (double, single) = (errors::<f64>(&x), errors::<f32>(&x));
         assert!(double.into_iter().all(|error| error < 1e-11), "{double:?}");
@@ -65,7 +66,7 @@ fn gains_are_exact_over_many_decades() {
             assert!(error < limit, "{error:e} {line}");
             count += 1;
         }
-        assert_eq!(count, 340);
+        assert_eq!(count, 340, "models in tests/data/control.txt: edit this count");
     }
     check::<f64>(1e-13);
     check::<f32>(1e-7);

@@ -5,11 +5,12 @@ use core::ptr;
 use acrobot::Action;
 use acrobot::numpy::Pcg64;
 
+use crate::SNAPSHOTS;
 use crate::memory::{Holder, change, check};
 use crate::status::{acrobot_status_t, status};
 
-/// Bytes of an acrobot_action_space_t.
-pub const ACROBOT_ACTION_SPACE_SIZE: usize = 64;
+/// Bytes of an acrobot_action_space_t. The header has this number, too.
+pub const ACROBOT_ACTION_SPACE_SIZE: usize = if SNAPSHOTS { 96 } else { 48 };
 
 /// Draws random actions: Gymnasium's `action_space`. You may copy and move it.
 #[repr(C, align(16))]

@@ -1,27 +1,38 @@
-//! A batch in the caller's memory: its header, then its blocks, then its generators.
+//! A batch in the caller's memory: its header, then its blocks, their own parameters, if any, and
+//! the generators.
 
 use core::ffi::{c_int, c_void};
 use core::{ptr, slice};
 
-use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, StepBuffers};
+use acrobot::Fast;
+use acrobot::arithmetic::Damped;
+use acrobot::batch::StepBuffers;
+use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams};
 use acrobot::numpy::Pcg64;
-use acrobot::task::Gymnasium;
-use acrobot::{Fast, Params, ResetOptions};
+use acrobot::task::AnyTask;
 
-use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t};
+use crate::data::{acrobot_draws_t, acrobot_observation_t, acrobot_params_t, acrobot_state_t};
 use crate::memory::{Holder, Span, array, change, check, check_apart, get, optional, read};
 use crate::single::check_max_steps;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
+use crate::task::{acrobot_reset_options_t, read_options, task_of};
 
 /// Alignment of a batch's memory.
 pub const ACROBOT_BATCH_ALIGN: usize = 64;
 
 // The header has these numbers, too: ACROBOT_BATCH_SIZE.
-const HEADER: usize = 256;
-const GENERATOR: usize = 48;
+const HEADER: usize = 704;
+const GENERATOR: usize = size_of::<Pcg64>();
 /// Acrobots that are stepped side by side. Microcontrollers have no SIMD for floats.
-const LANES: usize = if usize::BITS == 64 { 16 } else { 1 };
-const BLOCK: usize = if usize::BITS == 64 { 640 } else { 64 };
+const LANES: usize = if cfg!(target_family = "wasm") {
+    4
+} else if usize::BITS == 64 {
+    16
+} else {
+    1
+};
+const BLOCK: usize = size_of::<LanesBlock>();
+const OWN: usize = size_of::<Own>();
 
 /// The default: the step after an episode's end resets the acrobot. It ignores the action and
 /// returns the initial observation and a reward of 0.
@@ -41,11 +52,27 @@ pub struct acrobot_batch_t {
     _header: [u8; HEADER],
 }
 
+/// What all acrobots of a batch share.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_batch_settings_t {
+    /// The number of acrobots, above 0.
+    pub count: usize,
+    /// An ACROBOT_TASK.
+    pub task: c_int,
+    /// Whether each acrobot has its own parameters.
+    pub own_params: bool,
+    /// When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
+    pub autoreset: c_int,
+    /// Episodes are truncated after so many steps.
+    pub max_steps: u32,
+}
+
 /// Where acrobot_batch_step writes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_batch_results_t {
-    /// −1, or 0 if the acrobot terminated or was only reset.
+    /// As in acrobot_step_t; 0 if the acrobot was only reset.
     pub rewards: *mut f32,
     /// As in acrobot_step_t.
     pub terminated: *mut bool,
@@ -57,14 +84,20 @@ pub struct acrobot_batch_results_t {
     pub final_observations: *mut acrobot_observation_t,
 }
 
-type LanesBlock = Block<Fast, LANES>;
+type LanesBlock = Block<Damped<Fast>, LANES>;
 
-type Memory = BatchMemory<&'static mut [LanesBlock], &'static mut [Pcg64]>;
+type Own = LaneParams<Damped<Fast>, LANES>;
+
+/// `Own` is empty where acrobots share their parameters.
+pub type Memory =
+    BatchMemory<&'static mut [LanesBlock], &'static mut [Pcg64], OwnParams<&'static mut [Own]>>;
+
+pub type AnyBatch = Batch<Damped<Fast>, Memory, AnyTask, LANES>;
 
 pub struct Placed {
     /// Where `acrobot_batch_init` put it.
     address: usize,
-    batch: Batch<Fast, Memory, Gymnasium, LANES>,
+    pub batch: AnyBatch,
 }
 
 impl Holder for acrobot_batch_t {
@@ -73,7 +106,7 @@ impl Holder for acrobot_batch_t {
     const TAG: u32 = u32::from_le_bytes(*b"bats");
 
     unsafe fn span(this: *const Self) -> Result<Span, Rejected> {
-        Ok(memory_of(this, Self::value(this)?.batch.len()))
+        Ok(memory_of(this, &Self::value(this)?.batch))
     }
 
     fn check_address(placed: &Placed, this: *const Self) -> Result<(), Rejected> {
@@ -84,8 +117,13 @@ impl Holder for acrobot_batch_t {
 const _: () = {
     assert!(align_of::<acrobot_batch_t>() == ACROBOT_BATCH_ALIGN);
     assert!(align_of::<LanesBlock>() <= ACROBOT_BATCH_ALIGN);
-    assert!(size_of::<LanesBlock>() == BLOCK);
-    assert!(size_of::<Pcg64>() <= GENERATOR);
+    // The header has these numbers.
+    let sizes = match LANES {
+        1 => (64, 192, 40),
+        4 => (192, 576, 80),
+        _ => (640, 2240, 80),
+    };
+    assert!(BLOCK == sizes.0 && OWN == sizes.1 && GENERATOR == sizes.2);
     // The batch writes an observation as six floats.
     assert!(align_of::<[f32; 6]>() == align_of::<acrobot_observation_t>());
 };
@@ -99,58 +137,82 @@ unsafe fn counted<'a>(
     if placed.batch.len() == count { Ok(placed) } else { Err(ACROBOT_ERROR_WRONG_COUNT.into()) }
 }
 
-fn memory_of(batch: *const acrobot_batch_t, count: usize) -> Span {
-    Span::new(batch.cast::<u8>(), acrobot_batch_size(count))
+fn memory_of(this: *const acrobot_batch_t, batch: &AnyBatch) -> Span {
+    Span::new(this.cast::<u8>(), acrobot_batch_size(batch.len(), batch.has_own_params()))
 }
 
-/// ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
+/// ACROBOT_BATCH_SIZE(count), or with `own_params` ACROBOT_BATCH_OWN_SIZE(count), but at most
+/// SIZE_MAX.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
+pub extern "C" fn acrobot_batch_size(count: usize, own_params: bool) -> usize {
     let blocks = count.div_ceil(LANES);
     blocks
-        .saturating_mul(BLOCK)
+        .saturating_mul(if own_params { BLOCK + OWN } else { BLOCK })
         .saturating_add(count.saturating_mul(GENERATOR))
         .saturating_add(HEADER)
 }
 
-/// Makes a batch in `memory`, which has `size` bytes, with default parameters, in initial states.
-/// Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`. `batch` receives the
-/// batch's address.
+/// Puts a batch, which `make` returns, into the caller's memory.
+pub unsafe fn place(
+    memory: *mut c_void,
+    size: usize,
+    (count, own_params): (usize, bool),
+    batch: *mut *mut acrobot_batch_t,
+    make: impl FnOnce(Memory) -> Result<AnyBatch, Rejected>,
+) -> Result<(), Rejected> {
+    let to: *mut acrobot_batch_t = memory.cast();
+    check(to)?;
+    check(batch)?;
+    if count == 0 {
+        return Err(ACROBOT_ERROR_WRONG_COUNT.into());
+    }
+    let needed = acrobot_batch_size(count, own_params);
+    if size < needed {
+        return Err(ACROBOT_ERROR_BUFFER_TOO_SMALL.into());
+    }
+    check_apart(&[Span::new(to.cast::<u8>(), needed), Span::new(batch, 1)])?;
+    let block_count = count.div_ceil(LANES);
+    let own_count = if own_params { block_count } else { 0 };
+    let blocks: *mut LanesBlock = to.add(1).cast();
+    let own: *mut Own = blocks.add(block_count).cast();
+    let generators: *mut Pcg64 = own.add(own_count).cast();
+    for index in 0..block_count {
+        blocks.add(index).write(Block::EMPTY);
+    }
+    for index in 0..own_count {
+        own.add(index).write(LaneParams::default());
+    }
+    for index in 0..count {
+        generators.add(index).write(Pcg64::UNSEEDED);
+    }
+    let blocks = slice::from_raw_parts_mut(blocks, block_count);
+    let own = OwnParams::new(slice::from_raw_parts_mut(own, own_count));
+    let generators = slice::from_raw_parts_mut(generators, count);
+    let value =
+        Placed { address: to.addr(), batch: make(BatchMemory { blocks, generators, own })? };
+    Holder::init(to, value)?;
+    batch.write(to);
+    Ok(())
+}
+
+/// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's parameters,
+/// in initial states. Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`.
+/// `batch` receives the batch's address. With `own_params` acrobots can have different parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_init(
     memory: *mut c_void,
     size: usize,
     count: usize,
+    task: c_int,
+    own_params: bool,
     seed: u64,
     batch: *mut *mut acrobot_batch_t,
 ) -> acrobot_status_t {
     status(|| {
-        let to: *mut acrobot_batch_t = memory.cast();
-        check(to)?;
-        check(batch)?;
-        if count == 0 {
-            return Err(ACROBOT_ERROR_WRONG_COUNT.into());
-        }
-        if size < acrobot_batch_size(count) {
-            return Err(ACROBOT_ERROR_BUFFER_TOO_SMALL.into());
-        }
-        check_apart(&[memory_of(to, count), Span::new(batch, 1)])?;
-        let blocks: *mut LanesBlock = to.add(1).cast();
-        let block_count = count.div_ceil(LANES);
-        let generators: *mut Pcg64 = blocks.add(block_count).cast();
-        for index in 0..block_count {
-            blocks.add(index).write(Block::EMPTY);
-        }
-        for index in 0..count {
-            generators.add(index).write(Pcg64::UNSEEDED);
-        }
-        let blocks = slice::from_raw_parts_mut(blocks, block_count);
-        let generators = slice::from_raw_parts_mut(generators, count);
-        let batch_memory = BatchMemory { blocks, generators, own: () };
-        let value = Placed { address: to.addr(), batch: Batch::new(seed, batch_memory)? };
-        Holder::init(to, value)?;
-        batch.write(to);
-        Ok(())
+        let task = task_of(task)?;
+        place(memory, size, (count, own_params), batch, |memory| {
+            Ok(Batch::with_task(seed, task, memory)?)
+        })
     })
 }
 
@@ -163,20 +225,48 @@ pub unsafe extern "C" fn acrobot_batch_step(
     results: *const acrobot_batch_results_t,
     count: usize,
 ) -> acrobot_status_t {
+    step(batch, Inputs::Actions(actions), results, count)
+}
+
+/// As acrobot_batch_step, with any finite torques, N m.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_step_torque(
+    batch: *mut acrobot_batch_t,
+    torques: *const f32,
+    results: *const acrobot_batch_results_t,
+    count: usize,
+) -> acrobot_status_t {
+    step(batch, Inputs::Torques(torques), results, count)
+}
+
+enum Inputs {
+    Actions(*const u8),
+    Torques(*const f32),
+}
+
+unsafe fn step(
+    batch: *mut acrobot_batch_t,
+    inputs: Inputs,
+    results: *const acrobot_batch_results_t,
+    count: usize,
+) -> acrobot_status_t {
     status(|| {
         let placed = counted(batch, count)?;
         let pointers = Span::new(results, 1);
         let results = read(results)?;
-        let actions = array(actions.cast_mut(), count)?;
+        let inputs_span = match inputs {
+            Inputs::Actions(actions) => Span::of(array(actions.cast_mut(), count)?),
+            Inputs::Torques(torques) => Span::of(array(torques.cast_mut(), count)?),
+        };
         let rewards = array(results.rewards, count)?;
         let terminated = array(results.terminated, count)?;
         let truncated = array(results.truncated, count)?;
         let observations = optional(results.observations.cast(), count)?;
         let finals = optional(results.final_observations.cast(), count)?;
         check_apart(&[
-            memory_of(batch, count),
+            memory_of(batch, &placed.batch),
             pointers,
-            Span::of(actions),
+            inputs_span,
             Span::of(rewards),
             Span::of(terminated),
             Span::of(truncated),
@@ -189,7 +279,14 @@ pub unsafe extern "C" fn acrobot_batch_step(
         let mut buffers = StepBuffers::new(&mut *rewards, &mut *terminated, &mut *truncated);
         buffers.observations = observations.as_mut();
         buffers.final_observations = finals.as_mut();
-        placed.batch.step_into(&*actions, buffers)?;
+        match inputs {
+            Inputs::Actions(actions) => {
+                placed.batch.step_into(slice::from_raw_parts(actions, count), buffers)?;
+            }
+            Inputs::Torques(torques) => {
+                placed.batch.step_into(slice::from_raw_parts(torques, count), buffers)?;
+            }
+        }
         Ok(())
     })
 }
@@ -203,17 +300,26 @@ pub unsafe extern "C" fn acrobot_batch_observe(
     status(|| {
         let placed = counted(batch, count)?;
         let observations = array(observations.cast(), count)?;
-        check_apart(&[memory_of(batch, count), Span::of(observations)])?;
+        check_apart(&[memory_of(batch, &placed.batch), Span::of(observations)])?;
         Ok(placed.batch.observe(&mut *observations)?)
     })
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_count(
+pub unsafe extern "C" fn acrobot_batch_settings(
     batch: *const acrobot_batch_t,
-    count: *mut usize,
+    settings: *mut acrobot_batch_settings_t,
 ) -> acrobot_status_t {
-    get(batch, count, |placed| Ok(placed.batch.len()))
+    get(batch, settings, |placed| {
+        let batch = &placed.batch;
+        Ok(acrobot_batch_settings_t {
+            count: batch.len(),
+            task: *batch.task() as c_int,
+            own_params: batch.has_own_params(),
+            autoreset: batch.autoreset() as c_int,
+            max_steps: batch.max_steps().get(),
+        })
+    })
 }
 
 /// As acrobot_reset, for each acrobot.
@@ -225,14 +331,16 @@ pub unsafe extern "C" fn acrobot_batch_reset(batch: *mut acrobot_batch_t) -> acr
     })
 }
 
-/// As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
+/// As acrobot_reset_with, for each acrobot, seeded as acrobot_batch_init does.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
+pub unsafe extern "C" fn acrobot_batch_reset_with(
     batch: *mut acrobot_batch_t,
-    seed: u64,
+    options: *const acrobot_reset_options_t,
+    error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    status(|| {
-        Holder::value_mut(batch)?.batch.reset_with_seed(seed);
+    change(batch, ptr::null_mut(), error, |placed| {
+        let options = read_options(options, memory_of(batch, &placed.batch))?;
+        placed.batch.reset_with(options);
         Ok(())
     })
 }
@@ -247,7 +355,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seeds(
     status(|| {
         let placed = counted(batch, count)?;
         let seeds = array(seeds.cast_mut(), count)?;
-        check_apart(&[memory_of(batch, count), Span::of(seeds)])?;
+        check_apart(&[memory_of(batch, &placed.batch), Span::of(seeds)])?;
         for (generator, seed) in placed.batch.generators_mut().iter_mut().zip(&*seeds) {
             *generator = Pcg64::new(*seed);
         }
@@ -256,22 +364,25 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seeds(
     })
 }
 
-/// As acrobot_batch_reset, where `mask` is true. A byte that is neither true nor false is rejected.
+/// As acrobot_batch_reset_with, where `mask` is true. A byte that is neither true nor false is
+/// rejected.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset_masked(
     batch: *mut acrobot_batch_t,
     mask: *const bool,
     count: usize,
+    options: *const acrobot_reset_options_t,
+    error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    status(|| {
-        let placed = counted(batch, count)?;
+    change(batch, ptr::null_mut(), error, |placed| {
+        counted(batch, count)?;
         let bytes = array(mask.cast::<u8>().cast_mut(), count)?;
-        check_apart(&[memory_of(batch, count), Span::of(bytes)])?;
-        if (*bytes).iter().any(|byte| *byte > 1) {
-            return Err(ACROBOT_ERROR_OUT_OF_RANGE.into());
+        check_apart(&[memory_of(batch, &placed.batch), Span::of(bytes)])?;
+        if let Some(byte) = (*bytes).iter().find(|byte| **byte > 1) {
+            return Err(Rejected::number("mask", (*byte).into(), "", "true or false"));
         }
-        let mask = slice::from_raw_parts(mask, count);
-        Ok(placed.batch.reset_masked(mask, ResetOptions::default())?)
+        let options = read_options(options, memory_of(batch, &placed.batch))?;
+        Ok(placed.batch.reset_masked(slice::from_raw_parts(mask, count), options)?)
     })
 }
 
@@ -328,22 +439,69 @@ pub unsafe extern "C" fn acrobot_batch_set_state(
     })
 }
 
+/// The steps of an acrobot since its last reset.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_elapsed_steps(
+    batch: *const acrobot_batch_t,
+    index: usize,
+    steps: *mut u32,
+) -> acrobot_status_t {
+    get(batch, steps, |placed| Ok(placed.batch.elapsed_steps(index)?))
+}
+
+/// Whether the episode of an acrobot has ended and it waits for a reset.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_is_done(
+    batch: *const acrobot_batch_t,
+    index: usize,
+    is_done: *mut bool,
+) -> acrobot_status_t {
+    get(batch, is_done, |placed| Ok(placed.batch.is_done(index)?))
+}
+
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_params(
     batch: *const acrobot_batch_t,
+    index: usize,
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
-    get(batch, params, |placed| Ok(placed.batch.params(0).unwrap_or(Params::DEFAULT).into()))
+    get(batch, params, |placed| Ok(placed.batch.params(index)?.into()))
+}
+
+/// As acrobot_set_params, for one acrobot of a batch with own parameters.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_set_params(
+    batch: *mut acrobot_batch_t,
+    index: usize,
+    params: *const acrobot_params_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    change(batch, ptr::null_mut(), error, |placed| {
+        Ok(placed.batch.set_params(index, read(params)?.try_into()?)?)
+    })
 }
 
 /// As acrobot_set_params, for all acrobots.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_set_params(
+pub unsafe extern "C" fn acrobot_batch_set_all_params(
     batch: *mut acrobot_batch_t,
     params: *const acrobot_params_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(batch, ptr::null_mut(), error, |placed| {
         Ok(placed.batch.set_all_params(read(params)?.try_into()?)?)
+    })
+}
+
+/// From now on each reset of a batch with own parameters draws them, after the initial state and
+/// from the same random numbers. Zeros end it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_set_draws(
+    batch: *mut acrobot_batch_t,
+    draws: *const acrobot_draws_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    change(batch, ptr::null_mut(), error, |placed| {
+        Ok(placed.batch.set_draws(read(draws)?.try_into()?)?)
     })
 }

@@ -228,6 +228,7 @@ impl TryFrom<acrobot_draws_t> for Draws<f32> {
 }
 
 impl From<Params<f32>> for acrobot_params_t {
+    #[inline(never)] // saves code: many functions call it
     fn from(params: Params<f32>) -> Self {
         let numbers = params.numbers().map(|(_, number)| number);
         let dynamics = match params.dynamics {
@@ -243,6 +244,7 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
     type Error = Rejected;
 
     /// Rejects unknown dynamics only.
+    #[inline(never)]
     fn try_from(params: acrobot_params_t) -> Result<Self, Rejected> {
         // SAFETY: as above.
         let Fields { numbers, dynamics } = unsafe { transmute::<acrobot_params_t, Fields>(params) };

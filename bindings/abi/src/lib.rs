@@ -17,19 +17,48 @@ pub mod status;
 
 pub mod data;
 
+pub mod task;
+
+#[cfg(feature = "acrobots")]
 pub mod single;
 
-pub mod control;
+#[cfg(feature = "control")]
+pub mod model;
 
-pub mod planner;
+#[cfg(feature = "control")]
+pub mod regulator;
 
+#[cfg(feature = "control")]
+pub mod plan;
+
+#[cfg(feature = "control")]
+pub mod swing_up;
+
+#[cfg(feature = "control")]
+pub mod estimate;
+
+#[cfg(feature = "control")]
+pub mod identify;
+
+#[cfg(feature = "control")]
+pub mod mpc;
+
+#[cfg(feature = "acrobots")]
 pub mod action_space;
 
+#[cfg(feature = "acrobots")]
 pub mod batch;
 
-mod memory;
+#[cfg(all(feature = "acrobots", any(target_pointer_width = "64", target_family = "wasm")))]
+pub mod snapshot;
 
-mod task;
+#[cfg(target_family = "wasm")]
+mod heap;
+
+#[cfg(feature = "acrobots")]
+mod linked;
+
+mod memory;
 
 #[cfg(target_feature = "sse")]
 mod mode;
@@ -38,6 +67,10 @@ unsafe extern "C" {
     /// Does not exist: a program links only if no branch that panics is left.
     fn acrobot_has_a_panicking_branch() -> !;
 }
+
+/// Whether there are snapshots: not on microcontrollers, where they would take 64 bytes of each
+/// acrobot.
+const SNAPSHOTS: bool = cfg!(any(target_pointer_width = "64", target_family = "wasm"));
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {

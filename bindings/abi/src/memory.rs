@@ -78,6 +78,34 @@ pub struct Tagged<T: Holder> {
     value: T::Value,
 }
 
+/// Writes a result, or why a number was rejected, where not null.
+pub unsafe fn compute<T>(
+    result: *mut T,
+    error: *mut acrobot_error_t,
+    call: impl FnOnce() -> Result<T, Rejected>,
+) -> acrobot_status_t {
+    status(|| {
+        check(result)?;
+        if !error.is_null() {
+            check(error)?;
+        }
+        result.write(call().inspect_err(|rejected| rejected.explain(error))?);
+        Ok(())
+    })
+}
+
+/// Initializes a holder. Writes why a number was rejected, where not null.
+pub unsafe fn init<H: Holder>(
+    holder: *mut H,
+    error: *mut acrobot_error_t,
+    call: impl FnOnce() -> Result<H::Value, Rejected>,
+) -> acrobot_status_t {
+    status(|| {
+        check_result(error, holder)?;
+        H::init(holder, call().inspect_err(|rejected| rejected.explain(error))?)
+    })
+}
+
 /// Changes a holder's value. Writes the result, or why a number was rejected, where not null.
 pub unsafe fn change<H: Holder, T>(
     holder: *mut H,
@@ -147,6 +175,11 @@ pub fn check_apart(spans: &[Span]) -> Result<(), Rejected> {
 pub fn array<T>(start: *mut T, count: usize) -> Result<*mut [T], Rejected> {
     check(start)?;
     Ok(ptr::slice_from_raw_parts_mut(start, count))
+}
+
+/// An array of the caller that is valid whatever it contains.
+pub unsafe fn read_slice<'a, T: Copy>(start: *const T, count: usize) -> Result<&'a [T], Rejected> {
+    Ok(&*array(start.cast_mut(), count)?)
 }
 
 /// An array that the caller may omit: null and without elements then.

@@ -5,19 +5,20 @@ use core::num::NonZeroU32;
 use core::ptr;
 
 use acrobot::arithmetic::Damped;
-use acrobot::numpy::SeedSequence;
-use acrobot::task::{Balance, ResetBounds, Task};
-use acrobot::{Acrobot, Action, Fast, ResetOptions, TimeLimit};
+use acrobot::task::{Gymnasium, Task};
+use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
+use crate::SNAPSHOTS;
 use crate::data::{
     acrobot_draws_t, acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t,
 };
-use crate::memory::{Holder, change, check, get, read};
+use crate::linked::Linked;
+use crate::memory::{Holder, Span, change, check, get, init, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
-use crate::task::AnyTask;
+use crate::task::{acrobot_reset_options_t, read_options, task_of};
 
-/// Bytes of an acrobot_t.
-pub const ACROBOT_SIZE: usize = 272;
+/// Bytes of an acrobot_t. The header has this number, too.
+pub const ACROBOT_SIZE: usize = if SNAPSHOTS { 304 } else { 240 };
 
 /// Its alignment. malloc may align less, on microcontrollers to 8 bytes.
 pub const ACROBOT_ALIGN: usize = 16;
@@ -28,41 +29,32 @@ pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],
 }
 
+type Limited = TimeLimit<Acrobot<Damped<Fast>, Linked>>;
+
 impl Holder for acrobot_t {
-    type Value = TimeLimit<Acrobot<Damped<Fast>, AnyTask>>;
+    type Value = Limited;
 
     const TAG: u32 = u32::from_le_bytes(*b"acro");
 }
 
 const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
-fn reset(
-    acrobot: &mut TimeLimit<Acrobot<Damped<Fast>, AnyTask>>,
-    seed: Option<u64>,
-) -> acrobot_observation_t {
-    acrobot.reset_with(ResetOptions { seed: seed.map(SeedSequence::new), bounds: None }).into()
-}
-
-/// Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
+/// Gymnasium's `Acrobot-v1` in the state of `reset(seed=seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
-    status(|| Holder::init(acrobot, TimeLimit::with_task_limit(Acrobot::new(seed))))
+    status(|| Holder::init(acrobot, TimeLimit::new(Acrobot::new(seed), Gymnasium::MAX_STEPS)))
 }
 
-/// The task to stay upright: steps of 0.02 s, a motor of 10 N m, initial states near upright, and
-/// no end. The reward is 1 upright and 0 hanging.
+/// As acrobot_init, for an ACROBOT_TASK with its parameters and its limit of steps.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_init_balance(
+pub unsafe extern "C" fn acrobot_init_task(
     acrobot: *mut acrobot_t,
+    task: c_int,
     seed: u64,
+    error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    status(|| {
-        let mut balance = Acrobot::new(seed);
-        balance.set_task(AnyTask::Balance);
-        balance.set_params(Balance::PARAMS.cast())?;
-        let mut balance = TimeLimit::with_task_limit(balance);
-        reset(&mut balance, Some(seed));
-        Holder::init(acrobot, balance)
+    init(acrobot, error, || {
+        Ok(TimeLimit::with_task_limit(Acrobot::with_task(seed, Linked::new(task_of(task)?))?))
     })
 }
 
@@ -72,7 +64,7 @@ pub unsafe extern "C" fn acrobot_reset(
     acrobot: *mut acrobot_t,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(reset(acrobot, None)))
+    change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(acrobot.reset().into()))
 }
 
 /// As acrobot_reset after seeding: Gymnasium's `reset(seed=seed)`.
@@ -82,23 +74,21 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
     seed: u64,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(reset(acrobot, Some(seed))))
+    let reset = |acrobot: &mut Limited| Ok(acrobot.reset_with_seed(seed).into());
+    change(acrobot, observation, ptr::null_mut(), reset)
 }
 
-/// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
-/// rad/s; ±0.1 by default, and ±0.05 about upright in the task to stay there. Both must be finite
-/// as float, and `low` at most `high`.
+/// As acrobot_reset, with a seed of any size, or bounds of the initial state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_reset_within(
+pub unsafe extern "C" fn acrobot_reset_with(
     acrobot: *mut acrobot_t,
-    low: f64,
-    high: f64,
+    options: *const acrobot_reset_options_t,
     observation: *mut acrobot_observation_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
+    let span = Span::new(acrobot, 1);
     change(acrobot, observation, error, |acrobot| {
-        let bounds = ResetBounds::new(low, high)?;
-        Ok(acrobot.reset_with(bounds.into()).into())
+        Ok(acrobot.reset_with(read_options(options, span)?).into())
     })
 }
 
@@ -148,7 +138,25 @@ pub unsafe extern "C" fn acrobot_elapsed_steps(
     get(acrobot, steps, |acrobot| Ok(acrobot.elapsed_steps()))
 }
 
-/// Episodes are truncated after so many steps, above 0; 500 by default.
+/// Its ACROBOT_TASK.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_task(
+    acrobot: *const acrobot_t,
+    task: *mut c_int,
+) -> acrobot_status_t {
+    get(acrobot, task, |acrobot| Ok(acrobot.task().task() as c_int))
+}
+
+/// Episodes are truncated after so many steps.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_max_steps(
+    acrobot: *const acrobot_t,
+    max_steps: *mut u32,
+) -> acrobot_status_t {
+    get(acrobot, max_steps, |acrobot| Ok(acrobot.max_steps().get()))
+}
+
+/// Sets the limit of steps, above 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_max_steps(
     acrobot: *mut acrobot_t,

@@ -24,26 +24,58 @@ pub enum acrobot_status_t {
     ACROBOT_ERROR_NO_SUCH_INDEX = 9,
     /// Two arguments overlap: arrays, or a result and the acrobot or batch.
     ACROBOT_ERROR_OVERLAP = 10,
+    /// A snapshot has another checksum.
+    ACROBOT_ERROR_DAMAGED_SNAPSHOT = 11,
+    /// A snapshot is of another type, version or arithmetic, or contains what a setter rejects.
+    ACROBOT_ERROR_OTHER_SNAPSHOT = 12,
+    /// The batch has no memory for parameters of each acrobot.
+    ACROBOT_ERROR_SHARED_PARAMS = 13,
 }
 
 use acrobot_status_t::*;
+
+/// Why a call was rejected with ACROBOT_ERROR_OUT_OF_RANGE. acrobot_error_text has a text for each.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum acrobot_error_kind_t {
+    ACROBOT_OUT_OF_RANGE = 0,
+    /// An element of a matrix, a result, or what leads to it is not finite.
+    ACROBOT_NOT_FINITE = 1,
+    ACROBOT_NOT_SYMMETRIC = 2,
+    ACROBOT_NOT_SEMIDEFINITE = 3,
+    /// `value` is the first velocity that is not 0, or acceleration that is too large.
+    ACROBOT_NOT_IN_EQUILIBRIUM = 4,
+    /// The torque does not reach a motion that grows or persists.
+    ACROBOT_NOT_STABILIZABLE = 5,
+    /// The weights do not see a motion that persists.
+    ACROBOT_NOT_DETECTABLE = 6,
+    /// The error of a gain can be above 1e-9 of its largest element, or rounding breaks it.
+    ACROBOT_ILL_CONDITIONED = 7,
+    /// So many tries find no plan.
+    ACROBOT_NO_PLAN = 8,
+}
+
+use acrobot_error_kind_t::*;
 
 /// Why a number is out of range, as UTF-8:
 /// `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
 #[repr(C)]
 pub struct acrobot_error_t {
     pub value: f64,
+    /// One of acrobot_error_kind_t.
+    pub kind: c_int,
     /// `"dt"`
     pub name: [c_char; 24],
     /// `"s"`
     pub unit: [c_char; 16],
     /// `"finite and above 0 s"`
-    pub rule: [c_char; 64],
+    pub rule: [c_char; 80],
 }
 
 /// Why a call was rejected; for ACROBOT_ERROR_OUT_OF_RANGE `name must be rule unit, got value`.
 pub struct Rejected {
     status: acrobot_status_t,
+    kind: acrobot_error_kind_t,
     name: &'static str,
     value: f64,
     unit: &'static str,
@@ -52,7 +84,8 @@ pub struct Rejected {
 
 impl Rejected {
     pub fn number(name: &'static str, value: f64, unit: &'static str, rule: &'static str) -> Self {
-        Self { status: ACROBOT_ERROR_OUT_OF_RANGE, name, value, unit, rule }
+        let (status, kind) = (ACROBOT_ERROR_OUT_OF_RANGE, ACROBOT_OUT_OF_RANGE);
+        Self { status, kind, name, value, unit, rule }
     }
 
     /// Fills the caller's error if a number is out of range. Inlined, because a function without an
@@ -60,14 +93,19 @@ impl Rejected {
     #[inline(always)]
     pub unsafe fn explain(&self, error: *mut acrobot_error_t) {
         if !error.is_null() && matches!(self.status, ACROBOT_ERROR_OUT_OF_RANGE) {
-            let space = if self.unit.is_empty() { "" } else { " " };
-            let explained = acrobot_error_t {
-                value: self.value,
-                name: text([self.name, "", ""]),
-                unit: text([self.unit, "", ""]),
-                rule: text([self.rule, space, self.unit]),
-            };
-            error.write(explained);
+            error.write(self.explained());
+        }
+    }
+
+    #[inline(never)] // saves flash
+    fn explained(&self) -> acrobot_error_t {
+        let space = if self.unit.is_empty() { "" } else { " " };
+        acrobot_error_t {
+            value: self.value,
+            kind: self.kind as c_int,
+            name: text([self.name, "", ""]),
+            unit: text([self.unit, "", ""]),
+            rule: text([self.rule, space, self.unit]),
         }
     }
 }
@@ -80,26 +118,41 @@ impl From<acrobot_status_t> for Rejected {
 
 impl From<Error> for Rejected {
     fn from(error: Error) -> Self {
+        let of_kind =
+            |kind, name, value, rule| Self { kind, ..Self::number(name, value, "", rule) };
+        // Few rules, because each firmware contains their texts.
+        let no_gain = |kind, value| {
+            of_kind(
+                kind,
+                "gain",
+                value,
+                "finite; target, dt, gravity and weights allow no regulator",
+            )
+        };
+        let matrix =
+            |kind, name, value| of_kind(kind, name, value, "symmetric and positive semidefinite");
         match error {
             Error::OutOfRange { name, value, unit, rule } => Self::number(name, value, unit, rule),
+            Error::SharedParams => ACROBOT_ERROR_SHARED_PARAMS.into(),
             Error::UnknownAction(_) => ACROBOT_ERROR_UNKNOWN_ACTION.into(),
             Error::NoSuchIndex { .. } => ACROBOT_ERROR_NO_SUCH_INDEX.into(),
             Error::EmptyBatch | Error::WrongLength { .. } => ACROBOT_ERROR_WRONG_COUNT.into(),
             Error::NotFinite { name, value } => {
-                Self::number(name, value, "", "finite in each element")
+                of_kind(ACROBOT_NOT_FINITE, name, value, "finite in each element")
             }
+            Error::NotSymmetric { name, upper, .. } => matrix(ACROBOT_NOT_SYMMETRIC, name, upper),
+            Error::NotSemidefinite { name, value } => matrix(ACROBOT_NOT_SEMIDEFINITE, name, value),
             Error::NotInEquilibrium { rate, .. } => {
                 let rule = "in equilibrium: at rest, accelerating at most 0.25 % of a fall";
-                Self::number("target", rate, "", rule)
+                of_kind(ACROBOT_NOT_IN_EQUILIBRIUM, "target", rate, rule)
             }
             Error::NoPlan { tries } => {
-                Self::number("tries", tries.into(), "", "enough to find a plan")
+                of_kind(ACROBOT_NO_PLAN, "tries", tries.into(), "enough to find a plan")
             }
-            // Not another status: each firmware would contain its text.
-            _ => {
-                let rule = "finite; target, dt, gravity and weights allow no regulator";
-                Self::number("gain", f64::NAN, "", rule)
-            }
+            Error::NotStabilizable => no_gain(ACROBOT_NOT_STABILIZABLE, f64::NAN),
+            Error::NotDetectable => no_gain(ACROBOT_NOT_DETECTABLE, f64::NAN),
+            Error::IllConditioned { error } => no_gain(ACROBOT_ILL_CONDITIONED, error),
+            _ => no_gain(ACROBOT_OUT_OF_RANGE, f64::NAN),
         }
     }
 }
@@ -137,7 +190,40 @@ pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
         8 => c"the count is 0 or not that of the batch",
         9 => c"there is no acrobot with this index",
         10 => c"two arguments overlap",
+        11 => c"the snapshot is damaged",
+        12 => c"the snapshot is of another type, version or arithmetic",
+        13 => c"the batch has no own parameters",
         _ => c"unknown status",
     };
     text.as_ptr()
+}
+
+/// What Rust's `Error::message` says of the `kind` of an error. It is constant: do not free it.
+#[unsafe(no_mangle)]
+pub extern "C" fn acrobot_error_text(kind: c_int) -> *const c_char {
+    const X: f64 = 0.0;
+    // In the order of acrobot_error_kind_t.
+    static TEXTS: [[c_char; 96]; 9] = [
+        constant(Error::OutOfRange { name: "", value: X, unit: "", rule: "" }),
+        constant(Error::NotFinite { name: "", value: X }),
+        constant(Error::NotSymmetric { name: "", upper: X, lower: X }),
+        constant(Error::NotSemidefinite { name: "", value: X }),
+        constant(Error::NotInEquilibrium { rate: X, largest: X }),
+        constant(Error::NotStabilizable),
+        constant(Error::NotDetectable),
+        constant(Error::IllConditioned { error: X }),
+        constant(Error::NoPlan { tries: 0 }),
+    ];
+    let index = usize::try_from(kind).unwrap_or(usize::MAX);
+    TEXTS.get(index).map_or(c"unknown kind".as_ptr(), |text| text.as_ptr())
+}
+
+/// The message of an error, and zero bytes.
+const fn constant(error: Error) -> [c_char; 96] {
+    let (message, mut text, mut i) = (error.message().as_bytes(), [0; 96], 0);
+    while i < message.len() {
+        text[i] = message[i] as c_char;
+        i += 1;
+    }
+    text
 }

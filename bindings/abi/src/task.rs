@@ -1,67 +1,63 @@
-//! The task of one acrobot.
+//! Tasks, and what a reset may choose.
 
-use core::num::NonZeroU32;
+use core::ffi::c_int;
 
-use acrobot::arithmetic::{Arithmetic, Numbers};
-use acrobot::rand_core::Rng;
-use acrobot::task::{Balance, Gymnasium, Pose, ResetBounds, Task};
-use acrobot::{Params, State};
+use acrobot::ResetOptions;
+use acrobot::numpy::SeedSequence;
+use acrobot::task::{AnyTask, ResetBounds};
 
-/// A value and not a type, so that each function of the header is compiled once.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AnyTask {
-    Gymnasium,
-    Balance,
+use crate::memory::{Span, check_apart, read, read_slice};
+use crate::status::Rejected;
+
+/// Gymnasium's `Acrobot-v1`: swing the tip above a height.
+pub const ACROBOT_TASK_GYMNASIUM: c_int = 0;
+
+/// dm_control's `acrobot-swingup`, with friction: from rest anywhere to upright within 1,000 steps
+/// of 0.01 s. The reward is from 0 to 1. The observation has the sines of both links' angles from
+/// upright, their cosines, and the velocities.
+pub const ACROBOT_TASK_SWINGUP: c_int = 1;
+
+/// Stay upright for 500 steps of 0.02 s with a motor of 10 N m, from within ±0.05 of upright. The
+/// reward is 1 upright and 0 hanging.
+pub const ACROBOT_TASK_BALANCE: c_int = 2;
+
+pub fn task_of(number: c_int) -> Result<AnyTask, Rejected> {
+    let task = usize::try_from(number).ok().and_then(|index| AnyTask::ALL.get(index));
+    task.copied().ok_or(Rejected::number("task", number.into(), "", "from 0 to 2"))
 }
 
-impl AnyTask {
-    /// The bounds of initial states: a constant of each task, so this type has none.
-    pub fn reset_bounds(self) -> ResetBounds {
-        match self {
-            Self::Gymnasium => Gymnasium::RESET_BOUNDS,
-            Self::Balance => Balance::RESET_BOUNDS,
-        }
-    }
+/// What a reset may choose. Zeros: the random numbers continue, within the task's bounds.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_reset_options_t {
+    /// A seed of any size: its words of 32 bits, the lowest first. Null: none.
+    pub seed: *const u32,
+    pub seed_words: usize,
+    /// The lowest and the highest number of an initial state, rad and rad/s, about upright in a
+    /// task that begins there. Both are finite as float. Null: those of the task.
+    pub bounds: *const f64,
 }
 
-impl Task for AnyTask {
-    const NAME: &'static str = "any";
-    const DEFAULT: Self = Self::Gymnasium;
-    const MAX_STEPS: NonZeroU32 = Gymnasium::MAX_STEPS;
-
-    type Observation = [f32; 6];
-
-    fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
-        match self {
-            Self::Gymnasium => Gymnasium.draw(bounds, rng),
-            Self::Balance => Balance.draw(bounds, rng),
+/// Reads options, which must not overlap what the call changes. Null is zeros.
+pub unsafe fn read_options(
+    options: *const acrobot_reset_options_t,
+    changed: Span,
+) -> Result<ResetOptions, Rejected> {
+    if options.is_null() {
+        return Ok(ResetOptions::default());
+    }
+    let acrobot_reset_options_t { seed, seed_words, bounds } = read(options)?;
+    check_apart(&[changed, Span::new(options, 1), Span::new(seed, seed_words)])?;
+    let seed = match seed.is_null() {
+        true => None,
+        false => Some(SeedSequence::from_words(read_slice(seed, seed_words)?)),
+    };
+    let bounds = match bounds.is_null() {
+        true => None,
+        false => {
+            let [low, high] = read(bounds.cast::<[f64; 2]>())?;
+            Some(ResetBounds::new(low, high)?)
         }
-    }
-
-    #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 6] {
-        Gymnasium.observe::<A, V>(pose) // also that of `Balance`
-    }
-
-    #[inline(always)]
-    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> V::Mask {
-        match self {
-            Self::Gymnasium => Gymnasium.terminated::<A, V>(pose),
-            Self::Balance => Balance.terminated::<A, V>(pose),
-        }
-    }
-
-    #[inline(always)]
-    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
-        &self,
-        pose: &Pose<V>,
-        params: &Params<V>,
-        torque: V,
-        terminated: V::Mask,
-    ) -> V::Single {
-        match self {
-            Self::Gymnasium => Gymnasium.reward::<A, V>(pose, params, torque, terminated),
-            Self::Balance => Balance.reward::<A, V>(pose, params, torque, terminated),
-        }
-    }
+    };
+    Ok(ResetOptions { seed, bounds })
 }

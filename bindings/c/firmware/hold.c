@@ -4,7 +4,7 @@
 #include "console.h"
 
 static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1f, 0, 0, 0};
-static const acrobot_state_t WEIGHTS = {1, 1, 1, 1};
+static const acrobot_weights_t WEIGHTS = {{{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}}, 1};
 static const float LIMIT = 10;
 
 static acrobot_t acrobot; // stands for the machine
@@ -12,7 +12,8 @@ static acrobot_t acrobot; // stands for the machine
 int main(void)
 {
     acrobot_params_t params;
-    acrobot_state_t gain, x = LEANING;
+    acrobot_state_t state = LEANING, x = LEANING;
+    acrobot_lqr_t lqr;
     acrobot_step_t step;
     acrobot_status_t status = acrobot_init(&acrobot, 0);
 
@@ -24,18 +25,21 @@ int main(void)
         status = acrobot_set_params(&acrobot, &params, NULL);
     }
     if (status == ACROBOT_OK) {
-        status = acrobot_regulator(&acrobot, &UPRIGHT, &WEIGHTS, 1, &gain, NULL);
+        status = acrobot_regulator(&params, &UPRIGHT, 0, &WEIGHTS, &lqr, NULL);
     }
     if (status == ACROBOT_OK) {
         status = acrobot_set_state(&acrobot, &LEANING, NULL);
     }
     for (int tick = 0; tick < 1000 && status == ACROBOT_OK; tick++) {
-        status = acrobot_deviation_from(&acrobot, &UPRIGHT, &x);
-        float torque = -(gain.theta1 * x.theta1 + gain.theta2 * x.theta2 +
-                         gain.dtheta1 * x.dtheta1 + gain.dtheta2 * x.dtheta2);
+        status = acrobot_deviation_from(&state, &UPRIGHT, &x, NULL);
+        float torque = -(lqr.gain.theta1 * x.theta1 + lqr.gain.theta2 * x.theta2 +
+                         lqr.gain.dtheta1 * x.dtheta1 + lqr.gain.dtheta2 * x.dtheta2);
         torque = torque > LIMIT ? LIMIT : torque < -LIMIT ? -LIMIT : torque;
         if (status == ACROBOT_OK) {
             status = acrobot_step_torque(&acrobot, torque, &step, NULL);
+        }
+        if (status == ACROBOT_OK) {
+            status = acrobot_state(&acrobot, &state);
         }
     }
     if (status != ACROBOT_OK || x.theta1 > .001f || x.theta1 < -.001f) {

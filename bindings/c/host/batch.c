@@ -19,7 +19,8 @@ int main(void)
     long episodes = 0;
     const acrobot_batch_results_t results = {rewards, terminated, truncated, observations, NULL};
     acrobot_batch_t *batch;
-    acrobot_status_t status = acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch);
+    acrobot_status_t status = acrobot_batch_init(
+        memory, sizeof memory, COUNT, ACROBOT_TASK_GYMNASIUM, false, 42, &batch);
 
     if (status == ACROBOT_OK) {
         status = acrobot_batch_observe(batch, observations, COUNT);
@@ -35,7 +36,7 @@ int main(void)
         }
     }
     if (status == ACROBOT_OK) {
-        status = acrobot_batch_params(batch, &params);
+        status = acrobot_batch_params(batch, 0, &params);
     }
     if (status != ACROBOT_OK) {
         fprintf(stderr, "%s\n", acrobot_status_text(status));
@@ -43,7 +44,7 @@ int main(void)
     }
     printf("%ld episodes ended in 1000 steps of %d acrobots\n", episodes, COUNT);
     params.dt = 0;
-    status = acrobot_batch_set_params(batch, &params, &error);
+    status = acrobot_batch_set_all_params(batch, &params, &error);
     if (status == ACROBOT_ERROR_OUT_OF_RANGE) {
         // dt must be finite and above 0 s, got 0
         printf("%s must be %s, got %g\n", error.name, error.rule, error.value);

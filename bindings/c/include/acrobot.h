@@ -1,4 +1,4 @@
-// Gymnasium's Acrobot in C and C++: one or a batch, and plans, in single precision.
+// Gymnasium's Acrobot in C and C++: one or a batch, and control, in single precision.
 //
 // - You provide the memory, and may reuse it at any time. No function allocates, aborts or has
 //   global state. Threads and interrupts may use different acrobots at the same time.
@@ -7,7 +7,7 @@
 //   reset, may be null. The functions report null, misaligned pointers and zeroed memory, but not
 //   freed memory.
 // - Arguments, and arrays of a struct, must not overlap. The functions report arrays that overlap,
-//   and a result or error that would overwrite the acrobot, batch, planner or swing-up.
+//   and a result or error that would overwrite the acrobot, or what else an `_init` has made.
 // - Arrays have `count` elements, in a batch one for each acrobot; `index` and `step` count from 0.
 // - Numbers are in SI units.
 
@@ -27,12 +27,35 @@
 #endif
 #endif
 
-// Bytes of a batch of `count` acrobots, as a constant of type size_t.
-#if UINTPTR_MAX > 0xFFFFFFFF
-#define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * 48 + ((size_t)(count) + 15) / 16 * 640)
+#if UINTPTR_MAX > 0xFFFFFFFF || defined(__wasm__)
+// There are snapshots.
+#define ACROBOT_HAS_SNAPSHOTS
+// Bytes of an acrobot_t, and of an acrobot_action_space_t.
+#define ACROBOT_SIZE 304
+#define ACROBOT_ACTION_SPACE_SIZE 96
+#define ACROBOT_GENERATOR 80
 #else
-#define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * (48 + 64))
+// A microcontroller has no snapshots, and smaller acrobots.
+#define ACROBOT_SIZE 240
+#define ACROBOT_ACTION_SPACE_SIZE 48
+#define ACROBOT_GENERATOR 40
 #endif
+
+// Bytes of a batch of `count` acrobots, and of one with own parameters, as constants of size_t:
+// sizeof is one without a cast, of which C++ compilers may warn.
+#ifdef __wasm__
+#define ACROBOT_BATCH_SIZE(count) ACROBOT_BATCH_OF(count, 4, 192)
+#define ACROBOT_BATCH_OWN_SIZE(count) ACROBOT_BATCH_OF(count, 4, 192 + 576)
+#elif UINTPTR_MAX > 0xFFFFFFFF
+#define ACROBOT_BATCH_SIZE(count) ACROBOT_BATCH_OF(count, 16, 640)
+#define ACROBOT_BATCH_OWN_SIZE(count) ACROBOT_BATCH_OF(count, 16, 640 + 2240)
+#else
+#define ACROBOT_BATCH_SIZE(count) ACROBOT_BATCH_OF(count, 1, 64)
+#define ACROBOT_BATCH_OWN_SIZE(count) ACROBOT_BATCH_OF(count, 1, 64 + 192)
+#endif
+#define ACROBOT_BATCH_OF(count, lanes, block) \
+  (704 + (count) * sizeof(char[ACROBOT_GENERATOR]) + \
+   ((count) + sizeof(char[lanes]) - 1) / lanes * (block))
 
 // cbindgen writes the rest, and its comments, from the library's source.
 
@@ -64,8 +87,17 @@
 // standard deviation above 0.
 #define ACROBOT_DRAW_NORMAL 3
 
-// Bytes of an acrobot_t.
-#define ACROBOT_SIZE 272
+// Gymnasium's `Acrobot-v1`: swing the tip above a height.
+#define ACROBOT_TASK_GYMNASIUM 0
+
+// dm_control's `acrobot-swingup`, with friction: from rest anywhere to upright within 1,000 steps
+// of 0.01 s. The reward is from 0 to 1. The observation has the sines of both links' angles from
+// upright, their cosines, and the velocities.
+#define ACROBOT_TASK_SWINGUP 1
+
+// Stay upright for 500 steps of 0.02 s with a motor of 10 N m, from within ±0.05 of upright. The
+// reward is 1 upright and 0 hanging.
+#define ACROBOT_TASK_BALANCE 2
 
 // Its alignment. malloc may align less, on microcontrollers to 8 bytes.
 #define ACROBOT_ALIGN 16
@@ -76,8 +108,20 @@
 // Bytes of an acrobot_swing_up_t.
 #define ACROBOT_SWING_UP_SIZE 496
 
-// Bytes of an acrobot_action_space_t.
-#define ACROBOT_ACTION_SPACE_SIZE 64
+// Bytes of an acrobot_estimator_t.
+#define ACROBOT_ESTIMATOR_SIZE 288
+
+// Bytes of an acrobot_parameter_estimator_t.
+#define ACROBOT_PARAMETER_ESTIMATOR_SIZE 960
+
+// Bytes of an acrobot_regression_t.
+#define ACROBOT_REGRESSION_SIZE 992
+
+// Bytes of an acrobot_controller_t.
+#define ACROBOT_CONTROLLER_SIZE 5552
+
+// Bytes of an acrobot_replanner_t.
+#define ACROBOT_REPLANNER_SIZE 5376
 
 // Alignment of a batch's memory.
 #define ACROBOT_BATCH_ALIGN 64
@@ -92,6 +136,11 @@
 
 // The acrobots step on until acrobot_batch_reset_masked or another reset.
 #define ACROBOT_AUTORESET_DISABLED 2
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Bytes of a snapshot of an acrobot, at most.
+#define ACROBOT_SNAPSHOT_SIZE 224
+#endif
 
 typedef enum {
   ACROBOT_OK = 0,
@@ -112,7 +161,32 @@ typedef enum {
   ACROBOT_ERROR_NO_SUCH_INDEX = 9,
   // Two arguments overlap: arrays, or a result and the acrobot or batch.
   ACROBOT_ERROR_OVERLAP = 10,
+  // A snapshot has another checksum.
+  ACROBOT_ERROR_DAMAGED_SNAPSHOT = 11,
+  // A snapshot is of another type, version or arithmetic, or contains what a setter rejects.
+  ACROBOT_ERROR_OTHER_SNAPSHOT = 12,
+  // The batch has no memory for parameters of each acrobot.
+  ACROBOT_ERROR_SHARED_PARAMS = 13,
 } acrobot_status_t;
+
+// Why a call was rejected with ACROBOT_ERROR_OUT_OF_RANGE. acrobot_error_text has a text for each.
+typedef enum {
+  ACROBOT_OUT_OF_RANGE = 0,
+  // An element of a matrix, a result, or what leads to it is not finite.
+  ACROBOT_NOT_FINITE = 1,
+  ACROBOT_NOT_SYMMETRIC = 2,
+  ACROBOT_NOT_SEMIDEFINITE = 3,
+  // `value` is the first velocity that is not 0, or acceleration that is too large.
+  ACROBOT_NOT_IN_EQUILIBRIUM = 4,
+  // The torque does not reach a motion that grows or persists.
+  ACROBOT_NOT_STABILIZABLE = 5,
+  // The weights do not see a motion that persists.
+  ACROBOT_NOT_DETECTABLE = 6,
+  // The error of a gain can be above 1e-9 of its largest element, or rounding breaks it.
+  ACROBOT_ILL_CONDITIONED = 7,
+  // So many tries find no plan.
+  ACROBOT_NO_PLAN = 8,
+} acrobot_error_kind_t;
 
 // Acrobots in the memory of acrobot_batch_init. It contains pointers into this memory, so do not
 // move or copy it.
@@ -122,6 +196,20 @@ typedef struct acrobot_batch_t acrobot_batch_t;
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_SIZE];
 } acrobot_t;
+
+// Why a number is out of range, as UTF-8:
+// `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
+typedef struct {
+  double value;
+  // One of acrobot_error_kind_t.
+  int kind;
+  // `"dt"`
+  char name[24];
+  // `"s"`
+  char unit[16];
+  // `"finite and above 0 s"`
+  char rule[80];
+} acrobot_error_t;
 
 // Cosine and sine of each angle of the acrobot_state_t, and its angular velocities, rad/s; six
 // floats without padding.
@@ -134,17 +222,15 @@ typedef struct {
   float dtheta2;
 } acrobot_observation_t;
 
-// Why a number is out of range, as UTF-8:
-// `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
+// What a reset may choose. Zeros: the random numbers continue, within the task's bounds.
 typedef struct {
-  double value;
-  // `"dt"`
-  char name[24];
-  // `"s"`
-  char unit[16];
-  // `"finite and above 0 s"`
-  char rule[64];
-} acrobot_error_t;
+  // A seed of any size: its words of 32 bits, the lowest first. Null: none.
+  const uint32_t *seed;
+  size_t seed_words;
+  // The lowest and the highest number of an initial state, rad and rad/s, about upright in a
+  // task that begins there. Both are finite as float. Null: those of the task.
+  const double *bounds;
+} acrobot_reset_options_t;
 
 typedef struct {
   // The observation of the new state.
@@ -253,12 +339,55 @@ typedef struct {
   acrobot_draw_t rotor;
 } acrobot_draws_t;
 
-// One step, linearized: deviations x of the state and u of the torque become A x + B u.
+// How fast a state changes: angular velocities, rad/s, and accelerations, rad/s².
+typedef struct {
+  float dtheta1;
+  float dtheta2;
+  float ddtheta1;
+  float ddtheta2;
+} acrobot_rates_t;
+
+// The torques and forces of a motion.
+typedef struct {
+  // The torques on θ1 and θ2 that the motion needs, N m. The second is that of the motor. The
+  // first joint has none, so an acrobot's first torque is 0.
+  float torques[2];
+  // The force of the fixed joint on link 1, to the right and up, N.
+  float reaction[2];
+  // The same of link 1 on link 2 in the elbow.
+  float elbow[2];
+} acrobot_forces_t;
+
+// The equations of motion, linearized: deviations x of the state and u of the torque have the
+// rates A x + B u.
+typedef struct {
+  // A by rows, and B.
+  float a[4][4];
+  float b[4];
+} acrobot_linear_model_t;
+
+// One step of `dt`, linearized: deviations x of the state and u of the torque become A x + B u.
 typedef struct {
   // A by rows, and B.
   float a[4][4];
   float b[4];
 } acrobot_step_model_t;
+
+// What a regulator weighs: xᵀ Q x + R u² for a deviation x of the state and u of the torque.
+typedef struct {
+  // Q by rows, 1/rad² and s²/rad²: symmetric and positive semidefinite.
+  float q[4][4];
+  // R, 1/(N m)²; above 0.
+  float r;
+} acrobot_weights_t;
+
+// A linear-quadratic regulator.
+typedef struct {
+  // K of u = −K x, N m per rad and per rad/s.
+  acrobot_state_t gain;
+  // P by rows: xᵀ P x is the cost from x on.
+  float cost_to_go[4][4];
+} acrobot_lqr_t;
 
 // The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
 typedef struct {
@@ -339,6 +468,92 @@ typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_SWING_UP_SIZE];
 } acrobot_swing_up_t;
 
+// Estimates the state of a machine: an extended Kalman filter. Call acrobot_estimator_init first,
+// and then in each `dt` correct, decide and predict. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_ESTIMATOR_SIZE];
+} acrobot_estimator_t;
+
+// The noise of a machine.
+typedef struct {
+  // The standard deviation of a measured angle, rad; above 0 and at most 2. An encoder with n
+  // counts for a turn has 1.8 / n.
+  float angle_std;
+  // The standard deviation of the torque that acts, N m; above 0, and so small that a step
+  // changes θ̇2 by at most 1 / `dt`.
+  float torque_std;
+} acrobot_noise_t;
+
+// As acrobot_estimator_t, and estimates parameters.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_PARAMETER_ESTIMATOR_SIZE];
+} acrobot_parameter_estimator_t;
+
+// The standard deviations of parameters, each in its unit: 0 for one that is known.
+typedef struct {
+  float mass1;
+  float mass2;
+  float length1;
+  float inertia1;
+  float inertia2;
+  float damping1;
+  float damping2;
+  float coulomb1;
+  float coulomb2;
+  float rotor;
+} acrobot_parameter_std_t;
+
+// A regression of recordings, of constant size. Call acrobot_regression_init first. You may copy
+// and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_REGRESSION_SIZE];
+} acrobot_regression_t;
+
+// A sample of a recording, in double precision.
+typedef struct {
+  // θ1 and θ2, rad, without jumps by whole turns.
+  double angles[2];
+  // The torques on θ1 and θ2 from this sample to the next, N m. An acrobot's first is 0.
+  double torques[2];
+} acrobot_sample_t;
+
+// What fits recordings: the elements of the mass matrix where θ2 is ±π/2, [1, 1], [1, 2] and
+// [2, 2], kg m²; the moments m1 lc1 + m2 l1 and m2 lc2, kg m; the coupling m2 l1 lc2, kg m²;
+// viscous friction of both joints, N m s/rad; their Coulomb friction, N m.
+typedef struct {
+  double values[10];
+  // Their standard errors; INFINITY for a number that the recordings do not determine.
+  double std_errors[10];
+  // The combination that they determine least: the part of each number.
+  double weakest[10];
+  // How many combinations they do not determine.
+  size_t rank_deficiency;
+} acrobot_fit_t;
+
+// What a timer's interrupt does: it estimates the state, and follows a plan of 100 decisions. Call
+// acrobot_controller_init first. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_CONTROLLER_SIZE];
+} acrobot_controller_t;
+
+// A machine with encoders.
+typedef struct {
+  // `dt` is the time from a tick to the next.
+  acrobot_params_t params;
+  // The motor's largest torque, N m.
+  float limit;
+  // The counts of each encoder for a turn, above 0.
+  int32_t counts[2];
+  // Ticks from a decision to the next, above 0, such as 5 of 2 ms.
+  uint32_t ticks;
+} acrobot_settings_t;
+
+// What the main loop does: it plans for the estimated machine while this moves. Call
+// acrobot_replanner_init first. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
+  uint8_t bytes[ACROBOT_REPLANNER_SIZE];
+} acrobot_replanner_t;
+
 // Draws random actions: Gymnasium's `action_space`. You may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_ACTION_SPACE_SIZE];
@@ -346,7 +561,7 @@ typedef struct ACROBOT_ALIGNED(16) {
 
 // Where acrobot_batch_step writes.
 typedef struct {
-  // −1, or 0 if the acrobot terminated or was only reset.
+  // As in acrobot_step_t; 0 if the acrobot was only reset.
   float *rewards;
   // As in acrobot_step_t.
   bool *terminated;
@@ -358,6 +573,20 @@ typedef struct {
   acrobot_observation_t *final_observations;
 } acrobot_batch_results_t;
 
+// What all acrobots of a batch share.
+typedef struct {
+  // The number of acrobots, above 0.
+  size_t count;
+  // An ACROBOT_TASK.
+  int task;
+  // Whether each acrobot has its own parameters.
+  bool own_params;
+  // When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
+  int autoreset;
+  // Episodes are truncated after so many steps.
+  uint32_t max_steps;
+} acrobot_batch_settings_t;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -365,12 +594,17 @@ extern "C" {
 // The text of any status. It is constant: do not free it.
 const char *acrobot_status_text(int status);
 
-// Default parameters, and the state of Gymnasium's `reset(seed=seed)`.
+// What Rust's `Error::message` says of the `kind` of an error. It is constant: do not free it.
+const char *acrobot_error_text(int kind);
+
+// Gymnasium's `Acrobot-v1` in the state of `reset(seed=seed)`.
 acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
 
-// The task to stay upright: steps of 0.02 s, a motor of 10 N m, initial states near upright, and
-// no end. The reward is 1 upright and 0 hanging.
-acrobot_status_t acrobot_init_balance(acrobot_t *acrobot, uint64_t seed);
+// As acrobot_init, for an ACROBOT_TASK with its parameters and its limit of steps.
+acrobot_status_t acrobot_init_task(acrobot_t *acrobot,
+                                   int task,
+                                   uint64_t seed,
+                                   acrobot_error_t *error);
 
 // Begins an episode in a drawn initial state.
 acrobot_status_t acrobot_reset(acrobot_t *acrobot, acrobot_observation_t *observation);
@@ -380,14 +614,11 @@ acrobot_status_t acrobot_reset_with_seed(acrobot_t *acrobot,
                                          uint64_t seed,
                                          acrobot_observation_t *observation);
 
-// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
-// rad/s; ±0.1 by default, and ±0.05 about upright in the task to stay there. Both must be finite
-// as float, and `low` at most `high`.
-acrobot_status_t acrobot_reset_within(acrobot_t *acrobot,
-                                      double low,
-                                      double high,
-                                      acrobot_observation_t *observation,
-                                      acrobot_error_t *error);
+// As acrobot_reset, with a seed of any size, or bounds of the initial state.
+acrobot_status_t acrobot_reset_with(acrobot_t *acrobot,
+                                    const acrobot_reset_options_t *options,
+                                    acrobot_observation_t *observation,
+                                    acrobot_error_t *error);
 
 // Applies the torque of an ACROBOT_ACTION for one dt. After the end of an episode call
 // acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
@@ -404,7 +635,13 @@ acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t
 // Steps since the last reset.
 acrobot_status_t acrobot_elapsed_steps(const acrobot_t *acrobot, uint32_t *steps);
 
-// Episodes are truncated after so many steps, above 0; 500 by default.
+// Its ACROBOT_TASK.
+acrobot_status_t acrobot_task(const acrobot_t *acrobot, int *task);
+
+// Episodes are truncated after so many steps.
+acrobot_status_t acrobot_max_steps(const acrobot_t *acrobot, uint32_t *max_steps);
+
+// Sets the limit of steps, above 0.
 acrobot_status_t acrobot_set_max_steps(acrobot_t *acrobot,
                                        uint32_t max_steps,
                                        acrobot_error_t *error);
@@ -434,32 +671,80 @@ acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
 // The height of the tip above the fixed joint, m.
 acrobot_status_t acrobot_tip_height(const acrobot_t *acrobot, float *height);
 
-// The deviation of the state from a finite `target`, with angles wrapped to ±π.
-acrobot_status_t acrobot_deviation_from(const acrobot_t *acrobot,
+// The deviation of a state from a `target`, with angles wrapped to ±π.
+acrobot_status_t acrobot_deviation_from(const acrobot_state_t *state,
                                         const acrobot_state_t *target,
-                                        acrobot_state_t *deviation);
+                                        acrobot_state_t *deviation,
+                                        acrobot_error_t *error);
 
-// Linearizes one step of the acrobot about any state and torque, N m.
-acrobot_status_t acrobot_linearize_step(acrobot_t *acrobot,
+// The rates of a state under a torque, N m, by the equations of motion.
+acrobot_status_t acrobot_derivative(const acrobot_params_t *params,
+                                    const acrobot_state_t *state,
+                                    float torque,
+                                    acrobot_rates_t *rates,
+                                    acrobot_error_t *error);
+
+// The mass matrix M by rows, kg m²: the kinetic energy is half of vᵀ M v for the velocities v.
+acrobot_status_t acrobot_mass_matrix(const acrobot_params_t *params,
+                                     const acrobot_state_t *state,
+                                     float (*mass_matrix)[2][2],
+                                     acrobot_error_t *error);
+
+// What accelerations, rad/s², need in a state: the inverse of acrobot_derivative.
+acrobot_status_t acrobot_inverse_dynamics(const acrobot_params_t *params,
+                                          const acrobot_state_t *state,
+                                          float ddtheta1,
+                                          float ddtheta2,
+                                          acrobot_forces_t *forces,
+                                          acrobot_error_t *error);
+
+// Linearizes the equations of motion about any state and torque, N m.
+acrobot_status_t acrobot_linearize(const acrobot_params_t *params,
+                                   const acrobot_state_t *state,
+                                   float torque,
+                                   acrobot_linear_model_t *model,
+                                   acrobot_error_t *error);
+
+// Linearizes one step about any state and torque, N m.
+acrobot_status_t acrobot_linearize_step(const acrobot_params_t *params,
                                         const acrobot_state_t *state,
                                         float torque,
                                         acrobot_step_model_t *model,
                                         acrobot_error_t *error);
 
-// The gain of the linear-quadratic regulator that holds the acrobot at `target`. The torque is
-// −gain · x for a deviation x, a sum of four products; clamp it to that of your motor.
-//
-// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
-// accelerations of at most 0.25 % of that of the straight acrobot that falls from horizontal. `q`
-// has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` that
-// of the squared torque, above 0, in 1/(N m)². Where no regulator exists, `error` names the
-// `gain`.
-acrobot_status_t acrobot_regulator(acrobot_t *acrobot,
+// The regulator that holds a machine at `target`, which must be in equilibrium under `torque`,
+// N m, such as upright and 0: velocities of 0, and accelerations of at most 0.25 % of that with
+// which the straight machine, when it is horizontal, falls and is turned by the torque. Decisions
+// are `dt` apart. The torque is then `torque` − K x, a sum of four products; clamp it to that of
+// your motor.
+acrobot_status_t acrobot_regulator(const acrobot_params_t *params,
                                    const acrobot_state_t *target,
-                                   const acrobot_state_t *q,
-                                   float r,
-                                   acrobot_state_t *gain,
+                                   float torque,
+                                   const acrobot_weights_t *weights,
+                                   acrobot_lqr_t *lqr,
                                    acrobot_error_t *error);
+
+// The regulator of a model in continuous time: the least integral of the weights.
+acrobot_status_t acrobot_lqr(const acrobot_linear_model_t *model,
+                             const acrobot_weights_t *weights,
+                             acrobot_lqr_t *lqr,
+                             acrobot_error_t *error);
+
+// The regulator of a model of steps: the least sum of the weights.
+acrobot_status_t acrobot_dlqr(const acrobot_step_model_t *model,
+                              const acrobot_weights_t *weights,
+                              acrobot_lqr_t *lqr,
+                              acrobot_error_t *error);
+
+// The regulator along a trajectory: `models` and `gains` have an element for each step. P of
+// xᵀ P x, the cost after the last step, becomes that before the first. Rejected calls may change
+// gains.
+acrobot_status_t acrobot_tvlqr(const acrobot_step_model_t *models,
+                               const acrobot_weights_t *weights,
+                               float (*cost_to_go)[4][4],
+                               acrobot_state_t *gains,
+                               size_t count,
+                               acrobot_error_t *error);
 
 // The problem to stand with an `elbow` angle, rad, for a largest torque, N m: 0 is a swing-up. It
 // has the default weights, which follow from the size of the machine. Then you may change them.
@@ -474,6 +759,10 @@ acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
                                       const acrobot_problem_t *problem,
                                       acrobot_error_t *error);
 
+// Changes a planner to plan for a simulation that clamps velocities at the bounds of its
+// parameters, as Gymnasium's does. Plans may use that as a brake.
+acrobot_status_t acrobot_planner_with_velocity_clamp(acrobot_planner_t *planner);
+
 // Plans until a plan ends where the regulator holds the target. `length` receives its number of
 // knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
 // may change knots.
@@ -487,11 +776,13 @@ acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
                                       acrobot_error_t *error);
 
 // Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
-// `cost` receives what it costs.
+// `plan` stays as it is, so the machine may follow it meanwhile. `improved` receives the new plan,
+// and `cost` what it costs. Rejected calls may change `improved`.
 acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
                                          const acrobot_state_t *start,
                                          uint32_t iterations,
-                                         acrobot_knot_t *knots,
+                                         const acrobot_knot_t *plan,
+                                         acrobot_knot_t *improved,
                                          size_t length,
                                          float *cost,
                                          acrobot_error_t *error);
@@ -503,7 +794,8 @@ acrobot_status_t acrobot_planner_feedback(const acrobot_planner_t *planner,
 // Whether this feedback, with the largest torque, takes the machine from a state to the target.
 acrobot_status_t acrobot_planner_holds_from(const acrobot_planner_t *planner,
                                             const acrobot_state_t *state,
-                                            bool *holds);
+                                            bool *holds,
+                                            acrobot_error_t *error);
 
 // The torque at a step of a plan, N m, and after it that of the feedback. Clamp it to that of your
 // motor. It needs no planner, so knots and feedback may be constants.
@@ -512,7 +804,8 @@ acrobot_status_t acrobot_plan_torque(const acrobot_knot_t *knots,
                                      const acrobot_feedback_t *after,
                                      size_t step,
                                      const acrobot_state_t *state,
-                                     float *torque);
+                                     float *torque,
+                                     acrobot_error_t *error);
 
 // For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
 // torque, N m.
@@ -527,21 +820,157 @@ acrobot_status_t acrobot_swing_up_torque(acrobot_swing_up_t *swing_up,
                                          float *torque,
                                          acrobot_error_t *error);
 
+// Estimates the state of a machine with these parameters. The first measurement sets it.
+acrobot_status_t acrobot_estimator_init(acrobot_estimator_t *filter,
+                                        const acrobot_params_t *params,
+                                        const acrobot_noise_t *noise,
+                                        acrobot_error_t *error);
+
+// Corrects the estimate by measured angles, rad. The first ones are taken as they are, with
+// velocities of 0.
+acrobot_status_t acrobot_estimator_correct(acrobot_estimator_t *filter,
+                                           float theta1,
+                                           float theta2,
+                                           acrobot_error_t *error);
+
+// Takes a step of `dt` with a torque, N m. Before a measurement it does nothing. If a joint turns
+// by more than half a turn in the step, or a number overflows, it is rejected, and the next
+// measurement begins again.
+acrobot_status_t acrobot_estimator_predict(acrobot_estimator_t *filter,
+                                           float torque,
+                                           acrobot_error_t *error);
+
+acrobot_status_t acrobot_estimator_state(const acrobot_estimator_t *filter, acrobot_state_t *state);
+
+// The standard deviations of the state; INFINITY before a measurement.
+acrobot_status_t acrobot_estimator_state_std(const acrobot_estimator_t *filter,
+                                             acrobot_state_t *std);
+
+// Estimates the state, and the parameters whose standard deviation is not 0.
+acrobot_status_t acrobot_parameter_estimator_init(acrobot_parameter_estimator_t *filter,
+                                                  const acrobot_params_t *params,
+                                                  const acrobot_parameter_std_t *std,
+                                                  const acrobot_noise_t *noise,
+                                                  acrobot_error_t *error);
+
+// As acrobot_estimator_correct.
+acrobot_status_t acrobot_parameter_estimator_correct(acrobot_parameter_estimator_t *filter,
+                                                     float theta1,
+                                                     float theta2,
+                                                     acrobot_error_t *error);
+
+// As acrobot_estimator_predict.
+acrobot_status_t acrobot_parameter_estimator_predict(acrobot_parameter_estimator_t *filter,
+                                                     float torque,
+                                                     acrobot_error_t *error);
+
+acrobot_status_t acrobot_parameter_estimator_state(const acrobot_parameter_estimator_t *filter,
+                                                   acrobot_state_t *state);
+
+// As acrobot_estimator_state_std.
+acrobot_status_t acrobot_parameter_estimator_state_std(const acrobot_parameter_estimator_t *filter,
+                                                       acrobot_state_t *std);
+
+// The estimated parameters, and those that are known.
+acrobot_status_t acrobot_parameter_estimator_params(const acrobot_parameter_estimator_t *filter,
+                                                    acrobot_params_t *params);
+
+// No recording.
+acrobot_status_t acrobot_regression_init(acrobot_regression_t *regression);
+
+// Adds a recording with a sample in each `dt`, s, of a machine under `gravity`, m/s². A velocity
+// is that of a parabola through 2 `half` + 1 angles, and a window has so many samples; the next
+// one begins in its middle. Both are above 0. A recording that is too short adds nothing.
+acrobot_status_t acrobot_regression_add(acrobot_regression_t *regression,
+                                        const acrobot_sample_t *samples,
+                                        size_t count,
+                                        double dt,
+                                        double gravity,
+                                        size_t half,
+                                        size_t window,
+                                        acrobot_error_t *error);
+
+// The numbers that fit the recordings best.
+acrobot_status_t acrobot_regression_fit(const acrobot_regression_t *regression, acrobot_fit_t *fit);
+
+// The parameters of a fit: those of `given` with the length of link 1, masses, inertias, rotor and
+// friction that move as the machine does. Rejected if no machine has these numbers, or the
+// recordings do not determine one that is not a friction.
+acrobot_status_t acrobot_fit_params(const acrobot_fit_t *fit,
+                                    const acrobot_params_t *given,
+                                    acrobot_params_t *params,
+                                    acrobot_error_t *error);
+
+// The parameters of a recording with a sample in each `dt` of `given`, whose lengths should be
+// about right, too. Tries many windows, and takes those that predict best.
+acrobot_status_t acrobot_identify(const acrobot_sample_t *samples,
+                                  size_t count,
+                                  const acrobot_params_t *given,
+                                  acrobot_params_t *params,
+                                  acrobot_error_t *error);
+
+// The root of the mean square of the errors of angles, rad, if they are predicted `horizon` steps
+// ahead; 0 for a recording that is too short.
+acrobot_status_t acrobot_prediction_error(const acrobot_params_t *params,
+                                          const acrobot_sample_t *samples,
+                                          size_t count,
+                                          size_t horizon,
+                                          double *prediction_error,
+                                          acrobot_error_t *error);
+
+// A controller without a plan: its torque is 0.
+acrobot_status_t acrobot_controller_init(acrobot_controller_t *controller,
+                                         const acrobot_settings_t *settings,
+                                         acrobot_error_t *error);
+
+// The torque from now to the next tick, N m, from what both encoders count. It is short. If it is
+// rejected, switch the motor off.
+acrobot_status_t acrobot_controller_tick(acrobot_controller_t *controller,
+                                         int32_t count1,
+                                         int32_t count2,
+                                         float *torque,
+                                         acrobot_error_t *error);
+
+// The estimated state.
+acrobot_status_t acrobot_controller_state(const acrobot_controller_t *controller,
+                                          acrobot_state_t *state);
+
+// The estimated parameters.
+acrobot_status_t acrobot_controller_params(const acrobot_controller_t *controller,
+                                           acrobot_params_t *params);
+
+// A replanner without a plan.
+acrobot_status_t acrobot_replanner_init(acrobot_replanner_t *replanner,
+                                        const acrobot_settings_t *settings,
+                                        acrobot_error_t *error);
+
+// Gives the controller the plan once it is due, and takes the estimates. It is short, and no tick
+// may come meanwhile: switch the interrupt off.
+acrobot_status_t acrobot_replanner_exchange(acrobot_replanner_t *replanner,
+                                            acrobot_controller_t *controller);
+
+// Plans for some milliseconds to tens of them: once after each acrobot_replanner_exchange. The
+// interrupt may stop it anywhere.
+acrobot_status_t acrobot_replanner_work(acrobot_replanner_t *replanner);
+
 // Gymnasium's `action_space.seed(seed)`.
 acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space, uint64_t seed);
 
 // Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
 acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_space, uint8_t *action);
 
-// ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
-size_t acrobot_batch_size(size_t count);
+// ACROBOT_BATCH_SIZE(count), or with `own_params` ACROBOT_BATCH_OWN_SIZE(count), but at most
+// SIZE_MAX.
+size_t acrobot_batch_size(size_t count, bool own_params);
 
-// Makes a batch in `memory`, which has `size` bytes, with default parameters, in initial states.
-// Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`. `batch` receives the
-// batch's address.
+// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's parameters,
+// in initial states. Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`.
+// `batch` receives the batch's address. With `own_params` acrobots can have different parameters.
 acrobot_status_t acrobot_batch_init(void *memory,
                                     size_t size,
                                     size_t count,
+                                    int task,
+                                    bool own_params,
                                     uint64_t seed,
                                     acrobot_batch_t **batch);
 
@@ -552,25 +981,39 @@ acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch,
                                     const acrobot_batch_results_t *results,
                                     size_t count);
 
+// As acrobot_batch_step, with any finite torques, N m.
+acrobot_status_t acrobot_batch_step_torque(acrobot_batch_t *batch,
+                                           const float *torques,
+                                           const acrobot_batch_results_t *results,
+                                           size_t count);
+
 acrobot_status_t acrobot_batch_observe(const acrobot_batch_t *batch,
                                        acrobot_observation_t *observations,
                                        size_t count);
 
-acrobot_status_t acrobot_batch_count(const acrobot_batch_t *batch, size_t *count);
+acrobot_status_t acrobot_batch_settings(const acrobot_batch_t *batch,
+                                        acrobot_batch_settings_t *settings);
 
 // As acrobot_reset, for each acrobot.
 acrobot_status_t acrobot_batch_reset(acrobot_batch_t *batch);
 
-// As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
-acrobot_status_t acrobot_batch_reset_with_seed(acrobot_batch_t *batch, uint64_t seed);
+// As acrobot_reset_with, for each acrobot, seeded as acrobot_batch_init does.
+acrobot_status_t acrobot_batch_reset_with(acrobot_batch_t *batch,
+                                          const acrobot_reset_options_t *options,
+                                          acrobot_error_t *error);
 
 // As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.
 acrobot_status_t acrobot_batch_reset_with_seeds(acrobot_batch_t *batch,
                                                 const uint64_t *seeds,
                                                 size_t count);
 
-// As acrobot_batch_reset, where `mask` is true. A byte that is neither true nor false is rejected.
-acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch, const bool *mask, size_t count);
+// As acrobot_batch_reset_with, where `mask` is true. A byte that is neither true nor false is
+// rejected.
+acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch,
+                                            const bool *mask,
+                                            size_t count,
+                                            const acrobot_reset_options_t *options,
+                                            acrobot_error_t *error);
 
 // When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
 acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
@@ -592,12 +1035,89 @@ acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
                                          const acrobot_state_t *state,
                                          acrobot_error_t *error);
 
-acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch, acrobot_params_t *params);
+// The steps of an acrobot since its last reset.
+acrobot_status_t acrobot_batch_elapsed_steps(const acrobot_batch_t *batch,
+                                             size_t index,
+                                             uint32_t *steps);
 
-// As acrobot_set_params, for all acrobots.
+// Whether the episode of an acrobot has ended and it waits for a reset.
+acrobot_status_t acrobot_batch_is_done(const acrobot_batch_t *batch, size_t index, bool *is_done);
+
+acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch,
+                                      size_t index,
+                                      acrobot_params_t *params);
+
+// As acrobot_set_params, for one acrobot of a batch with own parameters.
 acrobot_status_t acrobot_batch_set_params(acrobot_batch_t *batch,
+                                          size_t index,
                                           const acrobot_params_t *params,
                                           acrobot_error_t *error);
+
+// As acrobot_set_params, for all acrobots.
+acrobot_status_t acrobot_batch_set_all_params(acrobot_batch_t *batch,
+                                              const acrobot_params_t *params,
+                                              acrobot_error_t *error);
+
+// From now on each reset of a batch with own parameters draws them, after the initial state and
+// from the same random numbers. Zeros end it.
+acrobot_status_t acrobot_batch_set_draws(acrobot_batch_t *batch,
+                                         const acrobot_draws_t *draws,
+                                         acrobot_error_t *error);
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Writes a snapshot into `bytes`, which has `size` bytes: ACROBOT_SNAPSHOT_SIZE is enough. An
+// acrobot that loads it continues with the same bits, in any language.
+acrobot_status_t acrobot_save(const acrobot_t *acrobot,
+                              uint8_t *bytes,
+                              size_t size,
+                              size_t *length);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Makes an acrobot of a snapshot.
+acrobot_status_t acrobot_load(acrobot_t *acrobot, const uint8_t *bytes, size_t length);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Bytes of a snapshot of a batch of `count` acrobots, at most.
+size_t acrobot_batch_snapshot_size(size_t count);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// As acrobot_save, for a batch.
+acrobot_status_t acrobot_batch_save(const acrobot_batch_t *batch,
+                                    uint8_t *bytes,
+                                    size_t size,
+                                    size_t *length);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// The number of acrobots in a snapshot of a batch, and whether they have own parameters.
+// acrobot_batch_size of these is the memory that acrobot_batch_load needs.
+acrobot_status_t acrobot_batch_saved_count(const uint8_t *bytes,
+                                           size_t length,
+                                           size_t *count,
+                                           bool *own_params);
+#endif
+
+#if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
+// Makes a batch of a snapshot in `memory`, which has `size` bytes. `batch` receives its address.
+acrobot_status_t acrobot_batch_load(void *memory,
+                                    size_t size,
+                                    const uint8_t *bytes,
+                                    size_t length,
+                                    acrobot_batch_t **batch);
+#endif
+
+#if defined(__wasm__)
+// `size` bytes of zeros, aligned for any type of the header; null without memory.
+uint8_t *acrobot_memory_new(size_t size);
+#endif
+
+#if defined(__wasm__)
+// Frees memory of acrobot_memory_new, with its size.
+void acrobot_memory_free(uint8_t *memory, size_t size);
+#endif
 
 #ifdef __cplusplus
 }  // extern "C"

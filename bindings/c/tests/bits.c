@@ -3,6 +3,7 @@
 #include <float.h>
 
 #include "check.h"
+#include "digest.h"
 
 #define COUNT 20
 
@@ -10,23 +11,6 @@
 static const uint64_t FAST = UINT64_C(0x273b096c8e81c01c);
 static const uint64_t BALANCE = UINT64_C(0x3c5d97b5d2a0597e);
 static const uint64_t BATCH = UINT64_C(0xeae8bc44fb2bab5e), TINY = UINT64_C(0xcc78d47481084cf5);
-
-// FNV-1a over 64-bit words.
-#define OFFSET UINT64_C(0xcbf29ce484222325)
-
-static void add(uint64_t *digest, uint64_t word)
-{
-    *digest = (*digest ^ word) * UINT64_C(0x100000001b3);
-}
-
-static void add_floats(uint64_t *digest, const void *floats, int count)
-{
-    for (int i = 0; i < count; i++) {
-        uint32_t bits;
-        __builtin_memcpy(&bits, (const float *)floats + i, sizeof bits);
-        add(digest, bits);
-    }
-}
 
 // The states of Rust's digests are doubles. Only finite numbers come here.
 static void add_seen(uint64_t *digest, const acrobot_t *acrobot,
@@ -86,7 +70,7 @@ static uint64_t balance(void)
         acrobot_t acrobot;
         acrobot_state_t state;
         acrobot_step_t step;
-        ACCEPTED(acrobot_init_balance(&acrobot, 0));
+        ACCEPTED(acrobot_init_task(&acrobot, ACROBOT_TASK_BALANCE, 0, NULL));
         ACCEPTED(acrobot_state(&acrobot, &state));
         // That of Rust's `Acrobot::<Fast, Balance>::new(0)`.
         CHECK(state.theta1 == 3.155289f && state.theta2 == -.02302133f);
@@ -123,12 +107,13 @@ static uint64_t batch_of_twenty(bool tiny)
     uint64_t digest = OFFSET;
     __builtin_memset(rows, 0, sizeof rows);
     __builtin_memset(finals, 0, sizeof finals);
-    ACCEPTED(acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch));
+    ACCEPTED(acrobot_batch_init(
+        memory, sizeof memory, COUNT, ACROBOT_TASK_GYMNASIUM, false, 42, &batch));
     if (tiny) {
-        ACCEPTED(acrobot_batch_params(batch, &params));
+        ACCEPTED(acrobot_batch_params(batch, 0, &params));
         params.torques[0] = (float)(-(double)FLT_MIN / 100);
         params.torques[2] = (float)((double)FLT_MIN / 100);
-        ACCEPTED(acrobot_batch_set_params(batch, &params, NULL));
+        ACCEPTED(acrobot_batch_set_all_params(batch, &params, NULL));
     }
     for (int i = 0; i < COUNT && tiny; i++) {
         ACCEPTED(acrobot_batch_set_state(batch, (size_t)i, &HANGING, NULL));
@@ -181,7 +166,7 @@ static uint64_t plan(void)
     ACCEPTED(acrobot_planner_plan(&planner, &HANGING, 64, 0, knots, KNOTS, &length, NULL));
     ACCEPTED(acrobot_state(&acrobot, &state));
     for (size_t i = 0; i < length; i++) {
-        ACCEPTED(acrobot_plan_torque(knots, length, &after, i, &state, &torque));
+        ACCEPTED(acrobot_plan_torque(knots, length, &after, i, &state, &torque, NULL));
         torque = torque > 10 ? 10 : torque < -10 ? -10 : torque;
         ACCEPTED(acrobot_step_torque(&acrobot, torque, &step, NULL));
         ACCEPTED(acrobot_state(&acrobot, &state));

@@ -18,6 +18,9 @@ static int failures = 0;
         } \
     } while (0)
 
+#define INF __builtin_inff()
+#define NAN __builtin_nanf("")
+
 #define ACCEPTED(call) CHECK((call) == ACROBOT_OK)
 #define REJECTED(error, call) CHECK((call) == ACROBOT_ERROR_##error)
 
@@ -47,6 +50,25 @@ static inline bool same_text(const char *left, const char *right)
         right++;
     }
     return *left == *right;
+}
+
+__attribute__((unused)) static acrobot_error_t error;
+
+// Whether a number was rejected with this message, up to its value.
+__attribute__((unused)) static void expect_message(acrobot_status_t status, const char *message)
+{
+    const char *parts[] = {error.name, " must be ", error.rule, ", got "}, *at = message;
+    CHECK(status == ACROBOT_ERROR_OUT_OF_RANGE);
+    for (int i = 0; i < 4; i++) {
+        for (const char *part = parts[i]; *part != 0; part++, at++) {
+            if (*part != *at) {
+                print(message);
+                print(" is not what the error says\n");
+                failures++;
+                return;
+            }
+        }
+    }
 }
 
 #endif

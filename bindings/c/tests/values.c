@@ -24,6 +24,8 @@ static void an_acrobot(void)
     acrobot_step_t step, twin_step;
     float number;
     uint32_t steps;
+    static const double bounds[] = {.5, .5};
+    const acrobot_reset_options_t options = {NULL, 0, bounds};
     ACCEPTED(acrobot_init(&acrobot, 42));
     ACCEPTED(acrobot_set_state(&acrobot, &HANGING, NULL));
     // −m1 g lc1 − m2 g (l1 + lc2), with the default parameters.
@@ -44,7 +46,7 @@ static void an_acrobot(void)
     ACCEPTED(acrobot_step_torque(&twin, PARAMS.torques[1], &twin_step, NULL));
     CHECK(same(&step.observation, &twin_step.observation, sizeof step.observation));
 
-    ACCEPTED(acrobot_reset_within(&acrobot, .5, .5, NULL, NULL));
+    ACCEPTED(acrobot_reset_with(&acrobot, &options, NULL, NULL));
     ACCEPTED(acrobot_state(&acrobot, &state));
     CHECK(state.theta1 == .5f && state.dtheta2 == .5f);
     ACCEPTED(acrobot_elapsed_steps(&acrobot, &steps));
@@ -56,7 +58,7 @@ static void an_acrobot(void)
     }
 }
 
-// Its second acrobot does what one alone does. It has no friction.
+// Its second acrobot does what one alone does.
 static void a_batch(void)
 {
     ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_SIZE(COUNT)];
@@ -72,17 +74,19 @@ static void a_batch(void)
     acrobot_state_t state;
     acrobot_params_t params = PARAMS, set;
     acrobot_step_t step;
-    size_t count;
-    ACCEPTED(acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch));
-    ACCEPTED(acrobot_batch_count(batch, &count));
-    CHECK(count == COUNT);
+    acrobot_batch_settings_t settings;
+    static const uint32_t seed[] = {42};
+    const acrobot_reset_options_t options = {seed, 1, NULL};
+    ACCEPTED(acrobot_batch_init(
+        memory, sizeof memory, COUNT, ACROBOT_TASK_GYMNASIUM, false, 42, &batch));
+    ACCEPTED(acrobot_batch_settings(batch, &settings));
+    CHECK(settings.count == COUNT && settings.max_steps == 500 && !settings.own_params);
     ACCEPTED(acrobot_batch_observe(batch, first, COUNT));
     ACCEPTED(acrobot_batch_set_state(batch, 1, &MOVING, NULL));
     ACCEPTED(acrobot_batch_state(batch, 1, &state));
     CHECK(same(&state, &MOVING, sizeof state));
-    params.damping1 = params.damping2 = params.coulomb1 = params.coulomb2 = params.rotor = 0;
-    ACCEPTED(acrobot_batch_set_params(batch, &params, NULL));
-    ACCEPTED(acrobot_batch_params(batch, &set));
+    ACCEPTED(acrobot_batch_set_all_params(batch, &params, NULL));
+    ACCEPTED(acrobot_batch_params(batch, 1, &set));
     CHECK(same(&set, &params, sizeof params));
     ACCEPTED(acrobot_init(&alone, 0));
     ACCEPTED(acrobot_set_state(&alone, &MOVING, NULL));
@@ -91,14 +95,14 @@ static void a_batch(void)
     ACCEPTED(acrobot_batch_step(batch, actions, &results, COUNT));
     CHECK(same(&rows[1], &step.observation, sizeof rows[1]));
 
-    ACCEPTED(acrobot_batch_reset_masked(batch, mask, COUNT));
+    ACCEPTED(acrobot_batch_reset_masked(batch, mask, COUNT, NULL, NULL));
     ACCEPTED(acrobot_batch_observe(batch, rows, COUNT));
     CHECK(same(&rows[1], &step.observation, sizeof rows[1]));
     CHECK(rows[0].dtheta2 <= .1f && rows[0].dtheta2 >= -.1f);
     ACCEPTED(acrobot_batch_reset(batch));
     ACCEPTED(acrobot_batch_observe(batch, rows, COUNT));
     CHECK(!same(&rows[1], &step.observation, sizeof rows[1]));
-    ACCEPTED(acrobot_batch_reset_with_seed(batch, 42));
+    ACCEPTED(acrobot_batch_reset_with(batch, &options, NULL));
     ACCEPTED(acrobot_batch_observe(batch, rows, COUNT));
     CHECK(same(rows, first, sizeof rows));
     ACCEPTED(acrobot_batch_reset_with_seeds(batch, seeds, COUNT));
@@ -112,35 +116,89 @@ static void a_batch(void)
     CHECK(truncated[0] && truncated[1]);
 }
 
-// The first row of tests/data/draws.csv.
-static void drawn_parameters(void)
+// Each has parameters of its own, and the same as one alone, whose seed is a child of the batch's.
+static void swing_ups(void)
 {
+    ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_OWN_SIZE(COUNT)];
+    static const uint32_t seed[] = {42}, child1[] = {42, 0, 0, 0, 1};
+    static const acrobot_reset_options_t of_batch = {seed, 1, NULL}, of_child1 = {child1, 5, NULL};
+    static const float torques[COUNT] = {1, -2};
     static acrobot_draws_t draws;
     const acrobot_draw_t mass2 = {ACROBOT_DRAW_UNIFORM, .8f, 1.2f, 0, 0};
-    const acrobot_draw_t inertia1 = {ACROBOT_DRAW_LOG_UNIFORM, .5f, 2, 0, 0};
-    const acrobot_draw_t gravity = {ACROBOT_DRAW_NORMAL, 9.5f, 10.1f, 9.8f, .1f};
-    const acrobot_draw_t dry = {ACROBOT_DRAW_UNIFORM, .1f, .1f, 0, 0};
-    acrobot_t acrobot;
-    acrobot_params_t params;
+    float rewards[COUNT];
+    bool terminated[COUNT], truncated[COUNT], is_done;
+    acrobot_observation_t rows[COUNT];
+    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL};
+    acrobot_batch_t *batch;
+    acrobot_batch_settings_t settings;
+    acrobot_t alone;
+    acrobot_params_t params, own;
+    acrobot_step_t step;
+    uint32_t steps;
+    int task;
     draws.mass2 = mass2;
-    draws.inertia1 = inertia1;
-    draws.gravity = gravity;
-    draws.coulomb2 = dry;
-    ACCEPTED(acrobot_init(&acrobot, 42));
-    ACCEPTED(acrobot_draw_params(&acrobot, &draws, NULL));
-    ACCEPTED(acrobot_params(&acrobot, &params));
-    CHECK(params.mass1 == 1 && params.mass2 == .837671f && params.gravity == 9.766048f);
-    CHECK(params.inertia1 == 1.9335401f && params.inertia2 == 1);
-    CHECK(params.coulomb1 == 0 && params.coulomb2 == .1f && params.rotor == 0);
+    ACCEPTED(acrobot_batch_init(
+        memory, sizeof memory, COUNT, ACROBOT_TASK_SWINGUP, true, 0, &batch));
+    ACCEPTED(acrobot_batch_set_draws(batch, &draws, NULL));
+    ACCEPTED(acrobot_batch_reset_with(batch, &of_batch, NULL));
+    ACCEPTED(acrobot_init_task(&alone, ACROBOT_TASK_SWINGUP, 0, NULL));
+    ACCEPTED(acrobot_reset_with(&alone, &of_child1, NULL, NULL));
+    ACCEPTED(acrobot_draw_params(&alone, &draws, NULL));
+    ACCEPTED(acrobot_params(&alone, &params));
+    ACCEPTED(acrobot_batch_params(batch, 1, &own));
+    CHECK(same(&own, &params, sizeof own) && own.mass2 != 1 && own.damping1 == .05f);
+    ACCEPTED(acrobot_batch_step_torque(batch, torques, &results, COUNT));
+    ACCEPTED(acrobot_step_torque(&alone, torques[1], &step, NULL));
+    CHECK(same(&rows[1], &step.observation, sizeof rows[1]) && rewards[1] == step.reward);
+    ACCEPTED(acrobot_batch_elapsed_steps(batch, 1, &steps));
+    ACCEPTED(acrobot_batch_is_done(batch, 1, &is_done));
+    CHECK(steps == 1 && !is_done);
+    ACCEPTED(acrobot_task(&alone, &task));
+    ACCEPTED(acrobot_max_steps(&alone, &steps));
+    ACCEPTED(acrobot_batch_settings(batch, &settings));
+    CHECK(task == ACROBOT_TASK_SWINGUP && steps == 1000);
+    CHECK(settings.task == task && settings.max_steps == 1000 && settings.own_params);
+    ACCEPTED(acrobot_batch_set_params(batch, 0, &PARAMS, NULL));
+    ACCEPTED(acrobot_batch_params(batch, 0, &own));
+    CHECK(same(&own, &PARAMS, sizeof own));
+#ifdef ACROBOT_HAS_SNAPSHOTS
+    ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t copy[ACROBOT_BATCH_OWN_SIZE(COUNT)];
+    static uint8_t bytes[1024];
+    acrobot_observation_t copied_rows[COUNT];
+    const acrobot_batch_results_t copied = {rewards, terminated, truncated, copied_rows, NULL};
+    acrobot_batch_t *loaded;
+    acrobot_step_t loaded_step;
+    size_t length, count;
+    bool own_params;
+    CHECK(acrobot_batch_snapshot_size(COUNT) <= sizeof bytes);
+    ACCEPTED(acrobot_batch_save(batch, bytes, sizeof bytes, &length));
+    ACCEPTED(acrobot_batch_saved_count(bytes, length, &count, &own_params));
+    CHECK(count == COUNT && own_params);
+    ACCEPTED(acrobot_batch_load(copy, sizeof copy, bytes, length, &loaded));
+    ACCEPTED(acrobot_batch_step_torque(batch, torques, &results, COUNT));
+    ACCEPTED(acrobot_batch_step_torque(loaded, torques, &copied, COUNT));
+    CHECK(same(rows, copied_rows, sizeof rows));
+    CHECK(acrobot_load(&alone, bytes, length) == ACROBOT_ERROR_OTHER_SNAPSHOT);
+    bytes[40] ^= 1;
+    CHECK(acrobot_batch_load(copy, sizeof copy, bytes, length, &loaded) ==
+          ACROBOT_ERROR_DAMAGED_SNAPSHOT);
+    ACCEPTED(acrobot_save(&alone, bytes, ACROBOT_SNAPSHOT_SIZE, &length));
+    CHECK(acrobot_save(&alone, bytes, length - 1, &length) == ACROBOT_ERROR_BUFFER_TOO_SMALL);
+    ACCEPTED(acrobot_step_torque(&alone, 1, &step, NULL));
+    ACCEPTED(acrobot_load(&alone, bytes, length));
+    ACCEPTED(acrobot_step_torque(&alone, 1, &loaded_step, NULL));
+    CHECK(same(&step.observation, &loaded_step.observation, sizeof step.observation));
+#endif
 }
 
 static void controllers(void)
 {
     static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1315927f, 0, 0, 0},
-                                 FAST = {0, 0, 1, 0};
+                                 FAST = {0, 0, 1, 0}, SLANTED = {3.1f, 0, 0, 0};
     // In units of the machine these are 1: T² is 4.5 kg m² by 24.6 N m.
-    static const acrobot_state_t WEIGHTS = {1, 1, 4.5f / 24.6f, 4.5f / 24.6f};
-    acrobot_knot_t knot = {HANGING, 2, HANGING, {0, 0}};
+    static const acrobot_weights_t WEIGHTS = {
+        {{1}, {0, 1}, {0, 0, 4.5f / 24.6f}, {0, 0, 0, 4.5f / 24.6f}}, 1 / 25.f};
+    acrobot_knot_t knot = {HANGING, 2, HANGING, {0, 0}}, improved;
     acrobot_t acrobot;
     acrobot_planner_t planner;
     acrobot_swing_up_t swing_up;
@@ -148,16 +206,18 @@ static void controllers(void)
     acrobot_problem_t problem;
     acrobot_feedback_t after;
     acrobot_step_model_t model;
-    acrobot_state_t x;
+    acrobot_lqr_t lqr;
+    acrobot_state_t state, x;
     acrobot_step_t step;
     float number, torque;
     bool holds;
     ACCEPTED(acrobot_init(&acrobot, 0));
     ACCEPTED(acrobot_params(&acrobot, &params));
-    ACCEPTED(acrobot_linearize_step(&acrobot, &UPRIGHT, 0, &model, NULL));
+    ACCEPTED(acrobot_linearize_step(&params, &UPRIGHT, 0, &model, NULL));
     ACCEPTED(acrobot_set_state(&acrobot, &LEANING, NULL));
     ACCEPTED(acrobot_step_torque(&acrobot, .01f, &step, NULL));
-    ACCEPTED(acrobot_deviation_from(&acrobot, &UPRIGHT, &x));
+    ACCEPTED(acrobot_state(&acrobot, &state));
+    ACCEPTED(acrobot_deviation_from(&state, &UPRIGHT, &x, NULL));
     CHECK(near(x.theta2, .01f * (model.b[1] - model.a[1][0])));
 
     // The cost of 2 N m for 0.2 s, before the torque is improved: 0.1 / T by the square of 5 N m.
@@ -165,25 +225,35 @@ static void controllers(void)
     CHECK(near(problem.cost.torque, .0093524f) && problem.cost.height == 2);
     problem.cost.below = problem.cost.arrival = 0;
     ACCEPTED(acrobot_planner_init(&planner, &problem, NULL));
-    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 0, &knot, 1, &number, NULL));
+    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 0, &knot, &improved, 1, &number, NULL));
     CHECK(near(number, .8f * problem.cost.torque));
-    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 9, &knot, 1, &number, NULL));
+    ACCEPTED(acrobot_planner_improve(&planner, &HANGING, 9, &improved, &knot, 1, &number, NULL));
     CHECK(near(number, 0) && near(knot.torque, 0));
 
     // After a plan, and without one, the regulator holds.
-    ACCEPTED(acrobot_regulator(&acrobot, &UPRIGHT, &WEIGHTS, 1 / 25.f, &x, NULL));
+    ACCEPTED(acrobot_regulator(&params, &UPRIGHT, 0, &WEIGHTS, &lqr, NULL));
     ACCEPTED(acrobot_planner_feedback(&planner, &after));
-    ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 1, &LEANING, &torque));
-    CHECK(near(torque, .01f * x.theta1));
+    ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 1, &LEANING, &torque, NULL));
+    CHECK(near(torque, .01f * lqr.gain.theta1));
     ACCEPTED(acrobot_swing_up_init(&swing_up, &params, 5, NULL));
     ACCEPTED(acrobot_swing_up_torque(&swing_up, &LEANING, &number, NULL));
     CHECK(number == torque);
-    ACCEPTED(acrobot_planner_holds_from(&planner, &LEANING, &holds));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &LEANING, &holds, NULL));
     CHECK(holds);
-    ACCEPTED(acrobot_planner_holds_from(&planner, &HANGING, &holds));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &HANGING, &holds, NULL));
     CHECK(!holds);
+    // Where link 2 would turn faster than its bound.
+    params.dt = .02f;
+    params.max_velocity2 = .5f;
+    ACCEPTED(acrobot_problem_init(&problem, &params, 10, 0, NULL));
+    ACCEPTED(acrobot_planner_init(&planner, &problem, NULL));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &SLANTED, &holds, NULL));
+    CHECK(!holds);
+    ACCEPTED(acrobot_planner_with_velocity_clamp(&planner));
+    ACCEPTED(acrobot_planner_holds_from(&planner, &SLANTED, &holds, NULL));
+    CHECK(holds);
     knot.gain.dtheta1 = 2;
-    ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 0, &FAST, &torque));
+    ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 0, &FAST, &torque, NULL));
     CHECK(near(torque, knot.torque - 2));
 
     // With a bent elbow the motor holds link 2.
@@ -194,8 +264,8 @@ static void controllers(void)
 int main(void)
 {
     an_acrobot();
-    drawn_parameters();
     a_batch();
+    swing_ups();
     controllers();
     return report("values");
 }

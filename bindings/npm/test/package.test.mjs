@@ -93,7 +93,7 @@ test("the modules import nothing, and those of acrobots and of control cannot pa
 });
 
 test("the programs of the documentation run in Node.js and print what they say", () => {
-  assert.equal(PROGRAMS.length, 7);
+  assert.equal(PROGRAMS.length, 7, `programs of ${PAGES}: edit this count`);
   PROGRAMS.forEach((program, i) => {
     write(`program${i}.mjs`, program);
     assert.equal(run("node", [`program${i}.mjs`]).trim(), printed(program));
@@ -126,7 +126,7 @@ test("types pass tsc --strict, with the newest TypeScript and with 5.2", () => {
 
 /**
  * A bundle of a program for es2020, which has no top-level await; Vite 6 and others compile for it.
- * Other bundlers are in tests/clients.
+ * The job `bundlers` tries others.
  */
 const bundled = (contents) => {
   const stdin = { contents, resolveDir: folder };

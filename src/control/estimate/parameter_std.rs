@@ -16,6 +16,7 @@ pub(super) const PARAMETERS: usize = 10;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(C)] // for bindings/abi
 pub struct ParameterStd<S = f64> {
     /// Of the mass of link 1, kg.
     pub mass1: S,

@@ -31,6 +31,7 @@ const SINGULAR: f64 = 1e-10;
 /// assert!((sample.angles[1] + 0.785).abs() < 1e-3); // rad
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)] // for bindings/abi
 pub struct Sample {
     /// θ1 and θ2, rad, without jumps by whole turns.
     pub angles: [f64; 2],
@@ -131,6 +132,7 @@ impl Regression {
     }
 
     /// As [`fit`](Self::fit), with 0 for each number that is not free.
+    #[inline(never)] // inlined, its flags are lanes whose other bits valgrind takes for undefined
     #[expect(clippy::indexing_slicing, reason = "i and j are below N")]
     fn fit_free(&self, is_free: [bool; N]) -> Fit {
         let products = &self.products;

@@ -23,6 +23,7 @@ use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(C)] // for bindings/abi
 pub struct StepModel<S = f64> {
     /// A by rows: `a[i][j]` is the derivative of the i-th number after the step by the j-th before.
     pub a: [[S; 4]; 4],

@@ -17,7 +17,7 @@ use crate::arithmetic::Arithmetic;
 use crate::control::regulator::{BoundedRegulator, back_up, is_below};
 use crate::control::units::Units;
 use crate::error::Error;
-use crate::math::matrix::spread;
+use crate::math::matrix::{check_finite, spread};
 use crate::math::{Real, SimdLevel};
 use crate::physics::State;
 
@@ -158,8 +158,9 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// # Errors
     ///
-    /// A number of the state or of the plan is not finite, or they are so extreme that the cost or
-    /// a derivative overflows.
+    /// A number of the state or of the plan is not finite; then the plan stays as it was. Or they
+    /// are so extreme that the cost or a derivative overflows; then the plan can be any, so improve
+    /// a copy of one that a machine follows.
     pub fn improve(
         &mut self,
         start: State<A::Scalar>,
@@ -167,6 +168,11 @@ impl<A: Arithmetic> Planner<A> {
         plan: &mut [Knot<A::Scalar>],
     ) -> Result<A::Scalar, Error> {
         start.validate()?;
+        for knot in &*plan {
+            knot.state.validate()?;
+            check_finite("torque", &[knot.torque])?;
+            check_finite("gain", &knot.gain)?;
+        }
         let (cost, _) = self.improve_alone(start, iterations, plan);
         self.finish(cost, plan)
     }

@@ -165,7 +165,8 @@ pub fn take_recorded_steps<A: Arithmetic>(
     }
     let singles = f64s(&read("tests/data/steps.bin"));
     let (singles, rest) = singles.as_chunks::<23>();
-    assert!(rest.is_empty() && singles.len() == 2600);
+    assert!(rest.is_empty());
+    assert_eq!(singles.len(), 2600, "steps in tests/data/steps.bin: edit this count");
     for (number, single) in singles.iter().enumerate() {
         let [given @ .., dynamics, x1, x2, x3, x4, action, y1, y2, y3, y4] = *single;
         let dynamics = [Dynamics::Book, Dynamics::Nips][dynamics as usize];

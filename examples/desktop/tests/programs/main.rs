@@ -80,7 +80,7 @@ fn a_plan_is_written_as_rust_and_c() {
 fn a_real_acrobot_is_held() {
     let table = Folder::new("real").printed("real --count 1");
     let rows: Vec<&str> = table.lines().skip(2).collect();
-    assert_eq!(rows.len(), 3, "{table}");
+    assert_eq!(rows.len(), 3, "docs/real.md has three models, the program printed:\n{table}");
     assert!(rows.iter().all(|row| row.matches("| 1, in").count() == 3), "{table}");
 }
 

@@ -1,16 +1,17 @@
-//! Plans, and swinging up without one.
+//! Plans.
 
 use core::mem::transmute;
+use core::ptr;
 
 use acrobot::arithmetic::Damped;
-use acrobot::control::plan::{Cost, Knot, Plan, Planner, Problem, SwingUp};
+use acrobot::control::plan::{Cost, Knot, Plan, Planner, Problem};
 use acrobot::control::regulator::Feedback;
 use acrobot::numpy::Pcg64;
-use acrobot::{Fast, State};
+use acrobot::{Error, Fast, State};
 
 use crate::data::{acrobot_params_t, acrobot_state_t};
-use crate::memory::{Holder, Span, array, change, check, check_apart, check_result, get, read};
-use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, status};
+use crate::memory::{Holder, Span, array, change, check, check_apart, compute, get, init, read};
+use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
 /// The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
 #[repr(C)]
@@ -105,21 +106,6 @@ impl Holder for acrobot_planner_t {
     const TAG: u32 = u32::from_le_bytes(*b"plan");
 }
 
-/// Bytes of an acrobot_swing_up_t.
-pub const ACROBOT_SWING_UP_SIZE: usize = 496;
-
-/// Swings up without a plan. Call acrobot_swing_up_init first. You may copy and move it.
-#[repr(C, align(16))]
-pub struct acrobot_swing_up_t {
-    bytes: [u8; ACROBOT_SWING_UP_SIZE],
-}
-
-impl Holder for acrobot_swing_up_t {
-    type Value = SwingUp<Damped<Fast>>;
-
-    const TAG: u32 = u32::from_le_bytes(*b"swup");
-}
-
 fn knots_of(
     planner: *const acrobot_planner_t,
     knots: *mut acrobot_knot_t,
@@ -142,18 +128,13 @@ pub unsafe extern "C" fn acrobot_problem_init(
     elbow: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    let init = || {
+    compute(problem, error, || {
         let params = read(params)?;
         let Problem { target, torque, cost, .. } =
             Problem::balance::<Damped<Fast>>(params.try_into()?, limit, elbow)?;
         // SAFETY: both are `repr(C)` and have the same fields.
         let cost = transmute::<Cost<f32>, acrobot_cost_t>(cost);
-        problem.write(acrobot_problem_t { params, limit, target: target.into(), torque, cost });
-        Ok(())
-    };
-    status(|| {
-        check(problem)?;
-        init().inspect_err(|rejected: &Rejected| rejected.explain(error))
+        Ok(acrobot_problem_t { params, limit, target: target.into(), torque, cost })
     })
 }
 
@@ -164,16 +145,24 @@ pub unsafe extern "C" fn acrobot_planner_init(
     problem: *const acrobot_problem_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    let init = || {
+    init(planner, error, || {
         let acrobot_problem_t { params, limit, target, torque, cost } = read(problem)?;
         // SAFETY: as above.
         let cost = transmute::<acrobot_cost_t, Cost<f32>>(cost);
         let (params, target) = (params.try_into()?, target.into());
-        Holder::init(planner, Planner::new(&Problem { params, limit, target, torque, cost })?)
-    };
-    status(|| {
-        check_result(error, planner)?;
-        init().inspect_err(|rejected| rejected.explain(error))
+        Ok(Planner::new(&Problem { params, limit, target, torque, cost })?)
+    })
+}
+
+/// Changes a planner to plan for a simulation that clamps velocities at the bounds of its
+/// parameters, as Gymnasium's does. Plans may use that as a brake.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_planner_with_velocity_clamp(
+    planner: *mut acrobot_planner_t,
+) -> acrobot_status_t {
+    change(planner, ptr::null_mut(), ptr::null_mut(), |value| {
+        *value = value.clone().with_velocity_clamp();
+        Ok(())
     })
 }
 
@@ -200,21 +189,27 @@ pub unsafe extern "C" fn acrobot_planner_plan(
 }
 
 /// Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
-/// `cost` receives what it costs.
+/// `plan` stays as it is, so the machine may follow it meanwhile. `improved` receives the new plan,
+/// and `cost` what it costs. Rejected calls may change `improved`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_planner_improve(
     planner: *mut acrobot_planner_t,
     start: *const acrobot_state_t,
     iterations: u32,
-    knots: *mut acrobot_knot_t,
+    plan: *const acrobot_knot_t,
+    improved: *mut acrobot_knot_t,
     length: usize,
     cost: *mut f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(planner, cost, error, |value| {
         check(cost)?;
-        let knots = knots_of(planner, knots, length)?;
-        Ok(value.improve(read(start)?.into(), iterations, &mut *knots)?)
+        let plan = knots_of(planner, plan.cast_mut(), length)?;
+        let improved = knots_of(planner, improved, length)?;
+        check_apart(&[Span::of(plan), Span::of(improved)])?;
+        let (start, improved) = (read(start)?.into(), &mut *improved);
+        improved.copy_from_slice(&*plan);
+        Ok(value.improve(start, iterations, improved)?)
     })
 }
 
@@ -236,8 +231,10 @@ pub unsafe extern "C" fn acrobot_planner_holds_from(
     planner: *const acrobot_planner_t,
     state: *const acrobot_state_t,
     holds: *mut bool,
+    error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    get(planner, holds, |value| {
+    change(planner.cast_mut(), holds, error, |value| {
+        check(holds)?;
         let state = State::from(read(state)?);
         state.validate()?;
         Ok(value.regulator().holds_from(state))
@@ -254,45 +251,18 @@ pub unsafe extern "C" fn acrobot_plan_torque(
     step: usize,
     state: *const acrobot_state_t,
     torque: *mut f32,
+    error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    status(|| {
-        check(torque)?;
+    compute(torque, error, || {
         let knots = array(knots.cast::<Knot<f32>>().cast_mut(), length)?;
         // SAFETY: as above.
         let after = transmute::<acrobot_feedback_t, Feedback<f32>>(read(after)?);
         let state = State::from(read(state)?);
         state.validate()?;
-        torque.write(Plan { knots: &*knots, after }.torque(step, state));
-        Ok(())
-    })
-}
-
-/// For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
-/// torque, N m.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_swing_up_init(
-    swing_up: *mut acrobot_swing_up_t,
-    params: *const acrobot_params_t,
-    limit: f32,
-    error: *mut acrobot_error_t,
-) -> acrobot_status_t {
-    let init = || Holder::init(swing_up, SwingUp::new(read(params)?.try_into()?, limit)?);
-    status(|| {
-        check_result(error, swing_up)?;
-        init().inspect_err(|rejected: &Rejected| rejected.explain(error))
-    })
-}
-
-/// The torque without a plan, N m, at most the largest. It pumps energy until the regulator holds.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_swing_up_torque(
-    swing_up: *mut acrobot_swing_up_t,
-    state: *const acrobot_state_t,
-    torque: *mut f32,
-    error: *mut acrobot_error_t,
-) -> acrobot_status_t {
-    change(swing_up, torque, error, |value| {
-        check(torque)?;
-        Ok(value.torque(read(state)?.into())?)
+        let torque = Plan { knots: &*knots, after }.torque(step, state);
+        match torque.is_finite() {
+            true => Ok(torque),
+            false => Err(Error::NotFinite { name: "torque", value: torque.into() }.into()),
+        }
     })
 }
