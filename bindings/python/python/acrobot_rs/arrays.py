@@ -95,7 +95,7 @@ def float32(name: str, rule: str, value: Any, shape: tuple[int, ...] = ()) -> An
 
 
 def integer(name: str, value: Any, low: int, high: float, error: Any = ValueError) -> int:
-    """An integer of Python or of NumPy. ``True`` and ``False`` are none."""
+    """An integer of Python or of NumPy, but neither ``True`` nor ``False``."""
     try:
         number = None if isinstance(value, bool) else operator.index(value)
     except TypeError:
@@ -153,7 +153,7 @@ def plain_seed(seed: Any) -> int | None:
 
 
 def independent(self: Any) -> Any:
-    """A copy that shares nothing, for ``copy.copy``: two objects with one state would be none."""
+    """A copy for ``copy.copy`` that shares no native state."""
     return copy.deepcopy(self)
 
 

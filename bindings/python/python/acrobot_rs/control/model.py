@@ -75,10 +75,11 @@ def dlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
 
 
 def tvlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike, Qf: ArrayLike) -> Pair:
-    """The regulator of ``n`` steps, each with its own model: ``(..., n, 4, 4)``, ``(..., n, 4, 1)``.
+    """The linear-quadratic regulator of ``n`` steps, each with its own model.
 
-    Qf weights the state after them. Returns K of each step, ``(..., n, 1, 4)``, and P before the
-    first one: xᵀ P x is the cost of all steps.
+    A has the shape ``(..., n, 4, 4)`` and B ``(..., n, 4, 1)``. Qf weights the
+    state after the last step. Returns K of each step, ``(..., n, 1, 4)``, and P before the first
+    one, ``(..., 4, 4)``: xᵀ P x is the cost of all steps.
     """
     rows = _call("tvlqr", (4, 4), None, A=A, B=B, Q=Q, Qf=Qf, R=R)
     return rows[..., 4:, None, :], rows[..., :4, :]
