@@ -197,9 +197,10 @@ pub unsafe fn place(
     Ok(())
 }
 
-/// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's parameters,
-/// in initial states. Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`.
-/// `batch` receives the batch's address. With `own_params` acrobots can have different parameters.
+/// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's
+/// parameters, in initial states. Acrobot `i` is seeded with NumPy's
+/// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address. With `own_params`
+/// acrobots can have different parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_init(
     memory: *mut c_void,

@@ -983,9 +983,10 @@ acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_spac
 // SIZE_MAX.
 size_t acrobot_batch_size(size_t count, bool own_params);
 
-// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's parameters,
-// in initial states. Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`.
-// `batch` receives the batch's address. With `own_params` acrobots can have different parameters.
+// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's
+// parameters, in initial states. Acrobot `i` is seeded with NumPy's
+// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address. With `own_params`
+// acrobots can have different parameters.
 acrobot_status_t acrobot_batch_init(void *memory,
                                     size_t size,
                                     size_t count,

@@ -298,12 +298,10 @@ static void arguments_of_an_acrobot(void)
     REJECTED(NULL, acrobot_init(NULL, 42));
     REJECTED(MISALIGNED, acrobot_init((acrobot_t *)(void *)(held + ACROBOT_ALIGN / 2), 42));
     REJECTED(NULL, acrobot_action_space_init(NULL, 42));
-    // The lowest byte of 256 is an action.
     REJECTED(UNKNOWN_ACTION, acrobot_step(acrobot, 256, &step));
     params_rejects("dynamics must be 0 (book) or 1 (NIPS), got 256", params.dynamics = 256);
     expect_message(acrobot_set_max_steps(acrobot, 0, &error),
                    "max_steps must be above 0 steps, got ");
-    CHECK(same_text(error.unit, "steps") && error.value == 0);
     REJECTED(NULL, acrobot_set_state(acrobot, NULL, &error));
     REJECTED(NULL, acrobot_set_params(acrobot, NULL, &error));
     REJECTED(NULL, acrobot_draw_params(acrobot, NULL, &error));

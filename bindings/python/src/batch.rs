@@ -29,7 +29,8 @@ pub struct Batch {
 impl Batch {
     #[new]
     #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed=None, max_episode_steps=NonZeroU32::MAX,
-        autoreset_mode="NextStep", kind=("gymnasium", "float32"), continuous=false, threads=NonZeroU32::MIN))]
+        autoreset_mode="NextStep", kind=("gymnasium", "float32"), continuous=false,
+        threads=NonZeroU32::MIN))]
     fn new(
         num_envs: NonZeroU32,
         seed: Option<Bound<'_, PyAny>>,

@@ -42,7 +42,9 @@ pub fn compute<'py>(
                 }
             });
         }
-        Ok(results)
+        let rule = format_args!("so small that {function} is finite");
+        let infinite = results.iter().find(|x| !f64::is_finite(**x));
+        infinite.map_or(Ok(()), |x| Err(wrong("the numbers", rule, x))).map(|()| results)
     });
     Ok(PyArray1::from_vec(py, results?))
 }
@@ -134,8 +136,8 @@ fn machine(acrobot: &Bound<'_, Acrobot>) -> PyResult<Params> {
     Ok(params)
 }
 
-/// What is computed in `f32`. An error is that of `f64`, if there is one: it has the numbers that
-/// Python gave.
+/// A result in `f32`. Its error is that of `f64`, if there is one, which shows the numbers before
+/// they are rounded.
 fn narrow<T, U>(
     narrow: impl FnOnce() -> Result<T, Error>,
     wide: impl FnOnce() -> Result<U, Error>,
@@ -371,7 +373,7 @@ impl Estimator {
         Ok(named_numbers(alone(slf)?.0.params()))
     }
 
-    /// Any estimator, which then has the state of this one.
+    /// Makes any estimator, which `__setstate__` then replaces by a copy of this one.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
         let any = (Acrobot::new(false, "gymnasium")?, 1.0, 1.0, [0.0; 10]);
         Ok((slf.get_type(), any, save(slf.py(), &alone(slf)?.0)?))

@@ -237,9 +237,9 @@ fn draw<S: Real>(kind: &str, numbers: &[f64]) -> Draw<S> {
     }
 }
 
-/// The torque of a continuous action, N m, which is within the smallest and the largest torque. In a
-/// swing-up the action 1 is the largest torque, −1 the smallest and 0 none. In other tasks actions
-/// are torques.
+/// The torque of a continuous action, N m, which is within the smallest and the largest torque. In
+/// a swing-up the action 1 is the largest torque, −1 the smallest and 0 none. In other tasks
+/// actions are torques.
 pub fn torque_of(task: AnyTask, action: f64, low: f64, high: f64) -> f64 {
     let torque = match task {
         AnyTask::Swingup => match action.clamp(-1.0, 1.0) {

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from acrobot_rs import control
 from numpy.testing import assert_allclose
-from scipy.differentiate import jacobian
 
 PARAMS = {"LINK_MASS_1": 1.3, "dt": 0.05, "AVAIL_TORQUE": (-1.0, 0.0, 1.0)}
 ENV = acrobot_rs.AcrobotSwingupEnv(DAMPING_1=0.2, LINK_MOI_1=0.3, **PARAMS)
@@ -58,22 +57,6 @@ def test_regulators_are_those_of_python_control_and_scipy():
     agree(control.regulator(ONE, 0.1, env=ENV)[0], python_control.dlqr(A, B, ONE, 0.1)[0])
 
 
-def test_linear_models_are_derivatives():
-    x = np.random.default_rng(0).uniform(-1, 1, (5, 200))
-    for linearize, function in (
-        (control.linearize, lambda x: control.derivative(x.T[..., :4], x.T[..., 4], ENV).T),
-        (
-            control.linearize_step,
-            lambda x: control.simulate(x.T[..., :4], x.T[..., 4:], ENV).T[:, 1],
-        ),
-    ):
-        A, B = linearize(x[:4].T, x[4], ENV)
-        agree(
-            np.concatenate([A, B], axis=-1),
-            jacobian(function, x, initial_step=0.1).df.transpose(2, 0, 1),
-        )
-
-
 def test_motions_obey_mechanics():
     states = np.random.default_rng(0).uniform(-1, 1, (2, 3, 4))
     accelerations = control.derivative(states, [0.1, 0.2, 0.3], ENV)[..., 2:]
@@ -82,19 +65,6 @@ def test_motions_obey_mechanics():
     momenta = control.mass_matrix(states, ENV) @ states[..., 2:, None]
     kinetic = control.energy(states, ENV) - control.energy(states * [1, 1, 0, 0], ENV)
     assert_allclose(kinetic, (states[..., 2:] * momenta[..., 0]).sum(axis=-1) / 2)
-
-
-def test_gains_along_a_trajectory_are_those_of_the_recursion():
-    rng = np.random.default_rng(0)
-    A, B = control.linearize_step(rng.uniform(-1, 1, (2, 5, 4)), 0.0, ENV)
-    gains, costs = control.tvlqr(A, B, ONE, 0.1, 2 * ONE)
-    for A, B, gains, cost in zip(A, B, gains, costs, strict=True):
-        P = 2 * ONE
-        for a, b, gain in [*zip(A, B, gains, strict=True)][::-1]:
-            K = np.linalg.solve(0.1 + b.T @ P @ b, b.T @ P @ a)
-            P = ONE + 0.1 * K.T @ K + (a - b @ K).T @ P @ (a - b @ K)
-            agree(gain, K)
-        agree(cost, P)
 
 
 REST, NAN = [0.0] * 4, np.nan
@@ -144,10 +114,12 @@ def std(**parameter_std):
     "call, message",
     [
         (lambda: control.energy([0.0] * 3), r"state must be .* \(\.\.\., 4\), got \(3,\)"),
-        (lambda: control.energy([0, 0, 0, 1e300]), "energy overflows"),
+        (
+            lambda: control.energy([0, 0, 0, 1e300]),
+            "the numbers must be so small that energy is finite, got inf",
+        ),
         (lambda: control.simulate([REST] * 2, [[0]] * 3), "state, torques must be arrays that br"),
         (lambda: control.lqr(**MODEL | {"Q": -ONE}), "Q must be positive semidefinite"),
-        (lambda: control.lqr(**MODEL | {"R": -1}), "R must be finite and above 0 .*, got -1$"),
         (lambda: control.Planner(-0.3), "max_torque must be finite and above 0 N m, got -0.3$"),
         (lambda: control.Planner(1e300), r"max_torque .* in the range of float32, got 1e\+300"),
         (lambda: control.Planner(1e-60), "max_torque .* in the range of float32, got 1e-60"),
@@ -185,44 +157,13 @@ def test_a_plan_swings_an_environment_up_from_a_nearby_state():
         assert control.SwingUp(6.0, env).torque(near) == plan.torque(len(plan.torques), near)
     rest = plan[50:]
     assert rest.torque(1, near) == plan.torque(51, near) and rest.after is plan.after
+    assert plan == copy.deepcopy(pickle.loads(pickle.dumps(plan))) != rest
     start = rest.states[0] + 0.01
     costs = [planner.improve(start, rest, n)[1] for n in (0, 1, 5)]
     assert costs[0] > costs[1] > costs[2]
     improved, cost = planner.improve(start, rest, 5)
     plans, costs = planner.improve_each([start, plan.states[0]], [rest, plan], 5)
     assert plans[0] == improved != rest and costs[0] == cost
-
-
-def test_a_plan_ends_with_a_bent_elbow():
-    env = acrobot_rs.AcrobotEnv(dt=0.02)
-    plan = control.Planner(12.0, env, elbow=1.0).plan([0, 0, 0, 0], steps=300)
-    assert plan == copy.deepcopy(pickle.loads(pickle.dumps(plan))) != plan[1:]
-    state = plan.states[0]
-    for step in range(len(plan.torques) + 300):
-        torque = np.clip(plan.torque(step, state), -12, 12)
-        state = control.simulate(state, [torque], env)[-1]
-    assert np.abs(control.deviation(state, plan.after.target)).max() < 0.01
-    assert plan.after.target[1] == 1.0
-
-
-def test_a_plan_has_the_bits_of_rust():
-    """The digest of `tests/bits/src/plan.rs`, of a plan and of an acrobot that follows it."""
-    params = {"dt": 0.01, "AVAIL_TORQUE": (-10, 0, 10)}
-    envs = acrobot_rs.AcrobotContinuousVectorEnv(1, **params)
-    env = acrobot_rs.AcrobotEnv(**params)
-    env.reset(seed=0)
-    plan = control.Planner(7, env).plan([0] * 4, steps=1100)
-    state, words = env.state, [1]
-    for step, (before, gain) in enumerate(zip(plan.states, plan.gains)):
-        envs.reset(options={"state": state})  # it does not end beyond the target height
-        envs.step([[plan.torque(step, state)]])
-        [state] = envs.state
-        numbers = np.concatenate([before, state, gain, plan.torques[[step] * 4]])
-        words += [1, *numbers.view(np.uint32).tolist()]
-    digest = 0xCBF29CE484222325
-    for word in words:
-        digest = (digest ^ word) * 0x100000001B3 % 2**64
-    assert digest == 0x875C0DC9E0FB48AB
 
 
 def test_weights_and_portions_of_tries_have_the_effect_of_rusts():
@@ -286,46 +227,14 @@ def test_an_animation_is_in_real_time(dt, frames, tmp_path):
     assert_allclose(values - values[0], np.linspace(0, -1080, frames), atol=0.11)
 
 
-def shaken():
-    """Ten seconds of a machine with friction, its encoders and its motor."""
-    env = acrobot_rs.AcrobotSwingupEnv(dt=0.002, COULOMB_1=0.1, LINK_MASS_2=1.2)
-    torques = np.repeat(np.random.default_rng(0).uniform(-6, 6, 40), 125)
-    states = control.simulate([0.0] * 4, torques, env)[:-1]
-    count = 2 * np.pi / 4096
-    return env, states, np.round(states[:, :2] / count) * count, torques
-
-
-def test_a_recording_tells_the_machine():
-    env, _, angles, torques = shaken()
-    angles = np.unwrap(angles, axis=0)
-    found = control.identify([angles], [torques], acrobot_rs.AcrobotSwingupEnv(dt=0.002))
-    assert found.rank_deficiency == 0 and found.std_errors["mass22"] < 0.01
-    assert_allclose(found.values["coulomb1"], 0.1, rtol=0.1)
-    again = acrobot_rs.AcrobotSwingupEnv(**found.params)
-    at = [0.3, 1.0, 0.0, 0.0]
-    assert_allclose(control.mass_matrix(at, again), control.mass_matrix(at, env), rtol=0.01)
-
-
-def test_angles_tell_the_state_and_a_mass():
-    _, states, angles, torques = shaken()
-    model = acrobot_rs.AcrobotSwingupEnv(dt=0.002, COULOMB_1=0.1)
-    noise = {"angle_std": 1.8 / 4096, "torque_std": 0.05}
-    known = control.Estimator(model, **noise)
-    estimator = control.Estimator(model, **noise, parameter_std={"LINK_MASS_2": 0.3})
-    assert estimator.state_std is None
-    found = []
-    for measured, torque in zip(angles, torques):
-        found.append(estimator.correct(measured))
-        known.correct(measured)
-        estimator.predict(torque)
-        known.predict(torque)
-    assert known.params["LINK_MASS_2"] == 1.0
-    assert_allclose(estimator.params["LINK_MASS_2"], 1.2, rtol=0.01)
-    assert np.sqrt(np.mean(np.square((found - states)[2500:, 2:]))) < 0.1
-    assert (estimator.state_std[2:] < 0.1).all()
-    twins = copy.copy(estimator), copy.deepcopy(estimator), pickle.loads(pickle.dumps(estimator))
-    for measured in angles[:2]:
-        expected = [estimator.correct(measured).tolist(), estimator.predict(0.5)]
-        for twin in twins:
-            assert [twin.correct(measured).tolist(), twin.predict(0.5)] == expected
-            assert twin.params == estimator.params
+def test_copies_of_an_estimator_continue_bit_identically():
+    estimator = std(LINK_MASS_2=0.3)
+    for tick in range(9):
+        twins = copy.copy(estimator), copy.deepcopy(estimator)
+        twins += (pickle.loads(pickle.dumps(estimator)),)
+        states = [each.correct([0.1 * tick, -0.1]).tolist() for each in (estimator, *twins)]
+        assert states == states[:1] * 4
+        for each in (estimator, *twins):
+            each.predict(0.5)
+            assert each.params == estimator.params
+    assert estimator.params["LINK_MASS_2"] != 1.0

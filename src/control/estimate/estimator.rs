@@ -22,7 +22,7 @@ use crate::math::matrix::{
 };
 use crate::math::sealed::Sealed as _;
 use crate::physics::{
-    Params, Pendulum, State, coulomb_friction, directions, plus_scaled, saturate, wrap,
+    FIELDS, Params, Pendulum, State, coulomb_friction, directions, plus_scaled, saturate, wrap,
 };
 
 /// An angle is farther than so many standard deviations from its prediction only after a push.
@@ -120,8 +120,9 @@ impl<A: Arithmetic> ParameterEstimator<A> {
     ) -> Result<Self, Error> {
         let std = std.numbers();
         let given = estimated(params.numbers());
-        for (i, ((name, _), deviation)) in given.into_iter().zip(std).enumerate() {
-            let (value, unit) = (deviation.to_f64(), "its unit");
+        for (i, ((name, unit, _), deviation)) in estimated(FIELDS).into_iter().zip(std).enumerate()
+        {
+            let value = deviation.to_f64();
             Range::AtLeastZero.check(name, value, unit)?;
             if i >= 5 && !A::HAS_FRICTION && value > 0.0 {
                 let rule = "known unless the arithmetic is Damped, in";

@@ -21,6 +21,8 @@ Seed = int | list[int | None] | tuple[int | None, ...] | None
 
 #: A Box, a reset and a policy have float32, which rounds other numbers with a warning.
 LARGEST = float(np.finfo(np.float32).max)
+#: The largest number of float64.
+MAX = float(np.finfo(np.float64).max)
 
 
 def must_be(name: str, rule: str, got: Any, error: type[Exception] = ValueError) -> Exception:
@@ -73,18 +75,14 @@ def numbers(
     return array
 
 
-def finite(
-    name: str, rule: str, value: Any, shape: tuple[int, ...] | None = (), largest: float = math.inf
-) -> NDArray[np.float64]:
+def finite(name: str, rule: str, value: Any, shape: Any = (), largest: float = MAX) -> Any:
     """As :func:`numbers`, in ``float64``: each is finite, and at most the largest."""
     given = numbers(name, rule, value, shape)
-    with np.errstate(over="ignore"):
-        array = given.astype(np.float64)
-    is_wrong = ~(np.isfinite(array) & (np.abs(array) <= largest))
-    if is_wrong.any():
-        index = tuple(np.argwhere(is_wrong)[0].tolist())
+    is_valid = np.abs(given) <= np.float64(largest)  # false for NaN
+    if not is_valid.all():
+        index = tuple(np.argwhere(~is_valid)[0].tolist())
         raise must_be(name, rule, f"{given[index]}{f' at {list(index)}' if index else ''}")
-    return array
+    return given.astype(np.float64, copy=False)
 
 
 def float32(name: str, rule: str, value: Any, shape: tuple[int, ...] = ()) -> Any:
@@ -97,7 +95,7 @@ def float32(name: str, rule: str, value: Any, shape: tuple[int, ...] = ()) -> An
 
 
 def integer(name: str, value: Any, low: int, high: float, error: Any = ValueError) -> int:
-    """An integer of Python or of NumPy. ``True`` and ``False`` are none."""
+    """An integer of Python or of NumPy, but neither ``True`` nor ``False``."""
     try:
         number = None if isinstance(value, bool) else operator.index(value)
     except TypeError:
@@ -155,7 +153,7 @@ def plain_seed(seed: Any) -> int | None:
 
 
 def independent(self: Any) -> Any:
-    """A copy that shares nothing, for ``copy.copy``: two objects with one state would be none."""
+    """A copy for ``copy.copy`` that shares no native state."""
     return copy.deepcopy(self)
 
 

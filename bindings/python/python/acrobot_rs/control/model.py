@@ -75,10 +75,11 @@ def dlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
 
 
 def tvlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike, Qf: ArrayLike) -> Pair:
-    """The regulator of ``n`` steps, each with its own model: ``(..., n, 4, 4)``, ``(..., n, 4, 1)``.
+    """The linear-quadratic regulator of ``n`` steps, each with its own model.
 
-    Qf weights the state after them. Returns K of each step, ``(..., n, 1, 4)``, and P before the
-    first one: xᵀ P x is the cost of all steps.
+    A has the shape ``(..., n, 4, 4)`` and B ``(..., n, 4, 1)``. Qf weights the
+    state after the last step. Returns K of each step, ``(..., n, 1, 4)``, and P before the first
+    one, ``(..., 4, 4)``: xᵀ P x is the cost of all steps.
     """
     rows = _call("tvlqr", (4, 4), None, A=A, B=B, Q=Q, Qf=Qf, R=R)
     return rows[..., 4:, None, :], rows[..., :4, :]
@@ -147,7 +148,4 @@ def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) 
         raise must_be(", ".join(arrays), "arrays that broadcast", shapes) from None
     rows = np.concatenate([np.broadcast_to(x, (*others, x.shape[-1])) for x in parts], axis=-1)
     rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]))
-    results = _native.compute(function, acrobot_of(env)._native, rows)
-    if not np.isfinite(results).all():
-        raise ValueError(f"{function} overflows; the numbers of its arguments must be smaller")
-    return results.reshape((*others, *shape))
+    return _native.compute(function, acrobot_of(env)._native, rows).reshape((*others, *shape))
