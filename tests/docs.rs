@@ -96,7 +96,7 @@ fn number(text: &str) -> Option<&str> {
     words.find(|word| word.starts_with(|c: char| c.is_ascii_digit()))
 }
 
-/// The comment of a parameter, which other languages repeat, has the unit and the range of its error.
+/// The comment of a parameter, which other languages repeat, has the unit and range of its error.
 #[test]
 fn parameters_are_described_with_their_units_and_ranges() {
     let mut params = Params::<f64>::DEFAULT;
