@@ -155,23 +155,26 @@ for name, fields in structs.items():
         lines += [f"    assert!(offset_of!({name}, {field}) == {start});"]
 write(f"{ABI}layout.rs", "\n".join([*lines, "};", ""]))
 
+
 # npm.
+def entries(start, items, indent, end):
+    listed = ", ".join(f"{in_javascript(name)}:\xa0{value}" for name, value in items)
+    return [f"{start} {{", *wrapped(f"{listed},", indent), end]
+
+
 draws = [name.lower() for name in re.findall(r"#define ACROBOT_DRAW_(\w+)", header)]
 lines = ["// derive.py writes this file: what acrobot.h says, with the layout in wasm32.", ""]
 for name, values_of in {"TASKS": tasks, "DRAWS": draws}.items():
     lines += [f"export const {name} = {json.dumps([*map(in_javascript, values_of)])};"]
 for name, kind in {"STATUS": "status", "KINDS": "error_kind"}.items():
-    body = re.search(rf"enum {{([^}}]*)}} acrobot_{kind}_t;", header)[1]
-    numbers = re.findall(r"ACROBOT_(?:ERROR_)?(\w+) = (\d+)", body)
-    quoted = ", ".join(f"{in_javascript(each.lower())}:\xa0{n}" for each, n in numbers)
-    lines += [f"export const {name} = {{", *wrapped(f"{quoted},", "  "), "};"]
-lines += ["", "/** Bytes. */", "export const SIZES = {"]
-# The first definition of a name is that of wasm32.
-for name, size in reversed(
-    dict(re.findall(r"#define ACROBOT_(?:(\w+)_)?SIZE (\d+)", header)[::-1]).items()
-):
-    lines += [f"  {in_javascript(name.lower()) or 'acrobot'}: {size},"]
-lines += ["};", "", "/** The first word of 32 bits and the words. `flags` are two bools. */"]
+    body = re.search(rf"enum {{([^}}]*)}} acrobot_{kind}_t;", header)[1].lower()
+    numbers = re.findall(r"acrobot_(?:error_)?(\w+) = (\d+)", body)
+    lines += entries(f"export const {name} =", numbers, "  ", "};")
+# The first definition is that of wasm32.
+holders = dict(reversed(re.findall(r"#define ACROBOT(\w*)_SIZE (\d+)", header)))
+holders = [(name.lower().strip("_") or "acrobot", size) for name, size in holders.items()]
+lines += ["", "/** Bytes. */", *entries("export const SIZES =", sorted(holders), "  ", "};")]
+lines += ["", "/** First word of 32 bits, and words. Two bools in one are `flags`. */"]
 lines += ["export const STRUCTS = {"]
 for name, fields in structs.items():
     places = {}
@@ -180,9 +183,8 @@ for name, fields in structs.items():
         if place in places.values():
             places.popitem()
             field = "flags"
-        places[in_javascript(field)] = place
-    quoted = ", ".join(f"{field}:\xa0{place}" for field, place in places.items())
-    lines += [f"  {name}: {{", *wrapped(f"{quoted},", "    "), "  },"]
+        places[field] = place
+    lines += entries(f"  {name}:", places.items(), "    ", "  },")
 write(f"{NPM}layout.js", "\n".join([*lines, "};", ""]))
 
 

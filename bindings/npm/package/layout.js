@@ -14,19 +14,11 @@ export const KINDS = {
 
 /** Bytes. */
 export const SIZES = {
-  acrobot: 304,
-  actionSpace: 96,
-  planner: 752,
-  swingUp: 496,
-  estimator: 288,
-  parameterEstimator: 960,
-  regression: 992,
-  controller: 5552,
-  replanner: 5376,
-  snapshot: 224,
+  acrobot: 304, actionSpace: 96, controller: 5552, estimator: 288, parameterEstimator: 960,
+  planner: 752, regression: 992, replanner: 5376, snapshot: 224, swingUp: 496,
 };
 
-/** The first word of 32 bits and the words. `flags` are two bools. */
+/** First word of 32 bits, and words. Two bools in one are `flags`. */
 export const STRUCTS = {
   acrobot_error_t: {
     value: [0, 2], kind: [2, 1], name: [3, 6], unit: [9, 4], rule: [13, 20],
