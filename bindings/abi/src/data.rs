@@ -126,8 +126,7 @@ pub struct acrobot_params_t {
     /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
     /// torque; 0, the default, draws nothing.
     pub torque_noise: f32,
-    /// Viscous friction of the fixed joint, N m s/rad; 0 or more. Default 0. This and the next four
-    /// must be 0 in a batch.
+    /// Viscous friction of the fixed joint, N m s/rad; 0 or more. Default 0.
     pub damping1: f32,
     /// As `damping1`, of the elbow.
     pub damping2: f32,
