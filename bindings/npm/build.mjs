@@ -54,13 +54,14 @@ async function compile(name, crate, library, flags, options) {
   return readFileSync(out);
 }
 
-/** The exports that the package names, as roots for wasm-metadce. */
+/** The exports that the package names, or whose prefix it quotes, as roots for wasm-metadce. */
 function used(built) {
   const sources = readdirSync("package").filter((file) => file.endsWith(".js"));
   const code = sources.map((file) => readFileSync(`package/${file}`, "utf8")).join();
   const names = new Set(code.match(/\w+/g));
+  const prefixes = code.match(/(?<=")acrobot\w*_estimator(?=")/g);
   return WebAssembly.Module.exports(new WebAssembly.Module(readFileSync(built)))
-    .filter(({ name }) => names.has(name))
+    .filter(({ name }) => names.has(name) || prefixes.some((each) => name.startsWith(each)))
     .map(({ name }) => ({ name, root: true, export: name }));
 }
 

@@ -10,8 +10,8 @@ import { checked, invalid, isFinite32, positive, randomSeed, seedWords } from ".
 export { moduleBytes, setModule } from "./wasm.js";
 
 const {
-  acrobot_cost_t: COST, acrobot_feedback_t: FEEDBACK, acrobot_fit_t: FIT,
-  acrobot_forces_t: FORCES, acrobot_knot_t: KNOT, acrobot_linear_model_t: MODEL,
+  acrobot_cost_t: COST, acrobot_feedback_t: FEEDBACK, acrobot_forces_t: FORCES,
+  acrobot_knot_t: KNOT, acrobot_linear_model_t: MODEL,
   acrobot_lqr_t: LQR, acrobot_noise_t: NOISE, acrobot_params_t: PARAMS,
   acrobot_parameter_std_t: STD, acrobot_problem_t: PROBLEM, acrobot_rates_t: RATES,
   acrobot_settings_t: SETTINGS, acrobot_state_t: STATE, acrobot_weights_t: WEIGHTS,
@@ -156,7 +156,15 @@ function writePlan(plan, knots) {
   return plan;
 }
 
-export class Planner extends Kept {
+/** What an `_init` function makes. */
+class Made extends Kept {
+  constructor(size, given, name, ...args) {
+    super();
+    hold(this, size, () => call(given, name, this, ...args));
+  }
+}
+
+export class Planner extends Made {
   static kind = "planner";
 
   constructor(params, limit, cost = {}, elbow = 0) {
@@ -167,8 +175,7 @@ export class Planner extends Kept {
     const problem = empty(PROBLEM);
     call(given, "acrobot_problem_init", problem, machine(changes), limit, elbow);
     pack(problem.subarray(PROBLEM.cost[0]), weights, COST);
-    super();
-    hold(this, SIZES.planner, () => call(given, "acrobot_planner_init", this, problem));
+    super(SIZES.planner, given, "acrobot_planner_init", problem);
   }
 
   plan(start, options) {
@@ -200,6 +207,11 @@ export class Planner extends Kept {
     return cost[0];
   }
 
+  withVelocityClamp() {
+    call({}, "acrobot_planner_with_velocity_clamp", this);
+    return this;
+  }
+
   holdsFrom(state) {
     const [[at, words], holds] = [readState(state), new Uint8Array(1)];
     call(at, "acrobot_planner_holds_from", this, words, holds);
@@ -207,17 +219,14 @@ export class Planner extends Kept {
   }
 }
 
-export class SwingUp extends Kept {
+export class SwingUp extends Made {
   static kind = "swing-up";
 
   constructor(params, limit) {
     const changes = readChanges(params);
     checkNumber("limit", limit);
-    super();
     const given = { ...changes, limit };
-    hold(this, SIZES.swingUp, () =>
-      call(given, "acrobot_swing_up_init", this, machine(changes), limit),
-    );
+    super(SIZES.swingUp, given, "acrobot_swing_up_init", machine(changes), limit);
   }
 
   torque(state) {
@@ -243,28 +252,6 @@ export function planTorque(plan, step, state) {
   return torque[0];
 }
 
-/** What both estimators do, by the names of their functions. */
-class Filter extends Kept {
-  correct(theta1, theta2) {
-    checkNumber("theta1", theta1);
-    checkNumber("theta2", theta2);
-    call({ theta1, theta2 }, this.constructor.functions.correct, this, theta1, theta2);
-  }
-
-  predict(torque) {
-    checkNumber("torque", torque);
-    call({ torque }, this.constructor.functions.predict, this, torque);
-  }
-
-  get state() {
-    return stateOf(this.constructor.functions.state, this);
-  }
-
-  get stateStd() {
-    return stateOf(this.constructor.functions.stateStd, this);
-  }
-}
-
 /** The state that a function writes. */
 function stateOf(name, kept) {
   const words = empty(STATE);
@@ -272,43 +259,50 @@ function stateOf(name, kept) {
   return unpack(words, STATE);
 }
 
-export class Estimator extends Filter {
+/** What both estimators do. */
+class Filter extends Made {
   static kind = "estimator";
-  static functions = {
-    correct: "acrobot_estimator_correct",
-    predict: "acrobot_estimator_predict",
-    state: "acrobot_estimator_state",
-    stateStd: "acrobot_estimator_state_std",
-  };
+  #prefix;
 
+  constructor(size, prefix, params, std, noise) {
+    const [changes, own] = [readChanges(params), allFields("noise", noise, NOISE)];
+    const given = { ...changes, ...std, ...own };
+    const words = [machine(changes), pack(empty(NOISE), own, NOISE)];
+    if (std) words.splice(1, 0, pack(empty(STD), std, STD));
+    super(size, given, `${prefix}_init`, ...words);
+    this.#prefix = prefix;
+  }
+
+  correct(theta1, theta2) {
+    const given = { theta1, theta2 };
+    for (const [name, angle] of Object.entries(given)) checkNumber(name, angle);
+    call(given, `${this.#prefix}_correct`, this, theta1, theta2);
+  }
+
+  predict(torque) {
+    checkNumber("torque", torque);
+    call({ torque }, `${this.#prefix}_predict`, this, torque);
+  }
+
+  get state() {
+    return stateOf(`${this.#prefix}_state`, this);
+  }
+
+  get stateStd() {
+    return stateOf(`${this.#prefix}_state_std`, this);
+  }
+}
+
+export class Estimator extends Filter {
   constructor(params, noise) {
-    const [changes, deviations] = [readChanges(params), allFields("noise", noise, NOISE)];
-    super();
-    const [given, words] = [{ ...changes, ...deviations }, pack(empty(NOISE), deviations, NOISE)];
-    hold(this, SIZES.estimator, () =>
-      call(given, "acrobot_estimator_init", this, machine(changes), words),
-    );
+    super(SIZES.estimator, "acrobot_estimator", params, undefined, noise);
   }
 }
 
 export class ParameterEstimator extends Filter {
-  static kind = "estimator";
-  static functions = {
-    correct: "acrobot_parameter_estimator_correct",
-    predict: "acrobot_parameter_estimator_predict",
-    state: "acrobot_parameter_estimator_state",
-    stateStd: "acrobot_parameter_estimator_state_std",
-  };
-
   constructor(params, std, noise) {
-    const changes = readChanges(params);
-    const [own, deviations] = [fields("std", std, STD), allFields("noise", noise, NOISE)];
-    super();
-    const words = [pack(empty(STD), own, STD), pack(empty(NOISE), deviations, NOISE)];
-    const given = { ...changes, ...own, ...deviations };
-    hold(this, SIZES.parameterEstimator, () =>
-      call(given, "acrobot_parameter_estimator_init", this, machine(changes), ...words),
-    );
+    const given = fields("std", std, STD);
+    super(SIZES.parameterEstimator, "acrobot_parameter_estimator", params, given, noise);
   }
 
   get params() {
@@ -348,49 +342,6 @@ export function predictionError(params, recording, horizon) {
   return error[0];
 }
 
-export class Regression extends Kept {
-  static kind = "regression";
-
-  constructor() {
-    super();
-    hold(this, SIZES.regression, () => call({}, "acrobot_regression_init", this));
-  }
-
-  add(recording, options) {
-    const names = ["dt", "gravity", "half", "window"];
-    const given = checked("options", options, names);
-    const { dt, gravity, half, window } = given;
-    checkNumber("dt", dt);
-    checkNumber("gravity", gravity);
-    positive("half", half);
-    positive("window", window);
-    const [own, samples, count] = readRecording(recording);
-    const args = [samples, count, dt, gravity, half, window];
-    call({ ...given, ...own }, "acrobot_regression_add", this, ...args);
-  }
-
-  fit() {
-    const words = empty(FIT);
-    call({}, "acrobot_regression_fit", this, words);
-    const [values, stdErrors, weakest] = rows(new Float64Array(words.buffer, 0, 30), 10);
-    const [rankDeficiency] = new Uint32Array(words.buffer, 4 * FIT.rankDeficiency[0]);
-    return { values, stdErrors, weakest, rankDeficiency };
-  }
-}
-
-export function fitParams(fit, params) {
-  const changes = readChanges(params);
-  const names = ["values", "stdErrors", "weakest"];
-  const { rankDeficiency, ...arrays } = checked("fit", fit, Object.keys(FIT));
-  checkNumber("rankDeficiency", rankDeficiency);
-  const numbers = names.flatMap((name) => elements(`fit.${name}`, arrays[name], 10));
-  const [words, params_] = [empty(FIT), empty(PARAMS)];
-  new Float64Array(words.buffer, 0, 30).set(numbers);
-  new Uint32Array(words.buffer)[FIT.rankDeficiency[0]] = rankDeficiency;
-  call(changes, "acrobot_fit_params", words, machine(changes), params_);
-  return unpack(params_, PARAMS);
-}
-
 const isInt32 = (number) => number === (number | 0);
 
 /** A copy of a machine with encoders, and its words. */
@@ -409,13 +360,12 @@ function readSettings(settings) {
   return [{ ...changes, limit, counts: integers, ticks }, words];
 }
 
-export class Controller extends Kept {
+export class Controller extends Made {
   static kind = "controller";
 
   constructor(settings) {
     const [given, words] = readSettings(settings);
-    super();
-    hold(this, SIZES.controller, () => call(given, "acrobot_controller_init", this, words));
+    super(SIZES.controller, given, "acrobot_controller_init", words);
   }
 
   tick(count1, count2) {
@@ -437,13 +387,12 @@ export class Controller extends Kept {
   }
 }
 
-export class Replanner extends Kept {
+export class Replanner extends Made {
   static kind = "replanner";
 
   constructor(settings) {
     const [given, words] = readSettings(settings);
-    super();
-    hold(this, SIZES.replanner, () => call(given, "acrobot_replanner_init", this, words));
+    super(SIZES.replanner, given, "acrobot_replanner_init", words);
   }
 
   exchange(controller) {

@@ -9,7 +9,6 @@ export const SIZES = {
   swingUp: 496,
   estimator: 288,
   parameterEstimator: 960,
-  regression: 992,
   controller: 5552,
   replanner: 5376,
 };
@@ -105,12 +104,6 @@ export const STRUCTS = {
     coulomb1: [7, 1],
     coulomb2: [8, 1],
     rotor: [9, 1],
-  },
-  acrobot_fit_t: {
-    values: [0, 20],
-    stdErrors: [20, 20],
-    weakest: [40, 20],
-    rankDeficiency: [60, 2],
   },
   acrobot_settings_t: { params: [0, 22], limit: [22, 1], counts: [23, 2], ticks: [25, 1] },
 };
