@@ -1,7 +1,9 @@
 // Builds the package into dist/, and packs it.
 
 import { execFile, execFileSync } from "node:child_process";
-import { cpSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import {
+  cpSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync,
+} from "node:fs";
 import { basename } from "node:path";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
@@ -17,7 +19,7 @@ const runBeside = promisify(execFile);
  * A loop is unrolled fully or not at all, and only up to 3 iterations: loops over the 4 lanes of a
  * batch's block become vectors instead. Fewer functions are inlined.
  */
-const SMALL = ["-unroll-full-max-count=3", "-unroll-allow-partial=false", "-inline-threshold=10"];
+const SMALL = ["-unroll-full-max-count=3", "-unroll-allow-partial=false", "-inline-threshold=60"];
 /**
  * wasm-opt's passes for smaller code. `--const-hoisting` turns constants that occur often into
  * locals. `--low-memory-unused` is safe because Rust puts nothing below address 1024.
@@ -27,34 +29,53 @@ const PASSES = [
   "--strip-debug", "--strip-producers", "--strip-target-features",
 ];
 
-/** Compiles this workspace for WebAssembly. */
-function compile() {
-  const flags = [...SMALL.map((option) => `-Cllvm-args=${option}`), "-Ctarget-feature=+simd128"];
-  const env = { ...process.env, RUSTFLAGS: flags.join(" ") };
+/** Compiles a crate for WebAssembly, and makes the module smaller. Returns its bytes. */
+async function compile(name, crate, library, flags, options) {
+  const all = [...SMALL.map((option) => `-Cllvm-args=${option}`), "-Ctarget-feature=+simd128"];
+  const env = { ...process.env, RUSTFLAGS: [...all, ...flags].join(" ") };
   // Named, because a user's configuration of Cargo may have others.
-  const places = ["--target", "wasm32-unknown-unknown", "--target-dir", "target"];
-  run("cargo", ["build", "--workspace", "--quiet", "--locked", "--release", ...places], env);
-}
-
-/** Makes a library of the workspace smaller, to target/`library`.wasm, and returns its bytes. */
-async function optimize(library) {
-  const [text, out] = [`target/${library}.wat`, `target/${library}.wasm`];
-  const built = `target/wasm32-unknown-unknown/release/${library}.wasm`;
+  const places = ["--target", "wasm32-unknown-unknown", "--target-dir", `target/${name}`];
+  const common = ["--manifest-path", `${crate}/Cargo.toml`, "--quiet", "--locked", "--release"];
+  run("cargo", ["rustc", ...common, ...places, "--crate-type", "cdylib", ...options], env);
+  const built = `target/${name}/wasm32-unknown-unknown/release/${library}.wasm`;
+  const [graph, text, out] = ["json", "wat", "wasm"].map((type) => `target/${name}.${type}`);
+  const roots = JSON.stringify(used(built));
   const time = (file) => statSync(file, { throwIfNoEntry: false })?.mtimeMs ?? 0;
-  if (time(out) < Math.max(time(built), time("build.mjs"), time("package-lock.json"))) {
+  if (time(graph) === 0 || readFileSync(graph, "utf8") !== roots) writeFileSync(graph, roots);
+  const inputs = [built, graph, "build.mjs", "package-lock.json"];
+  if (time(out) < Math.max(...inputs.map(time))) {
+    const binaryen = (tool, ...args) => runBeside(`node_modules/.bin/${tool}`, args);
+    await binaryen("wasm-metadce", built, "--graph-file", graph, "-o", out, "--all-features");
     // As text first, for the test that nothing panics: in the binary format, code that is never
     // reached also ends in `unreachable`.
-    await runBeside("node_modules/.bin/wasm-opt", [built, "-S", "-o", text, ...PASSES]);
-    await runBeside("node_modules/.bin/wasm-as", [text, "-o", out, "--all-features"]);
+    await binaryen("wasm-opt", out, "-S", "-o", text, ...PASSES);
+    await binaryen("wasm-as", text, "-o", out, "--all-features");
   }
   return readFileSync(out);
 }
 
+/** The exports that the package names, or whose prefix it quotes, as roots for wasm-metadce. */
+function used(built) {
+  const sources = readdirSync("package").filter((file) => file.endsWith(".js"));
+  const code = sources.map((file) => readFileSync(`package/${file}`, "utf8")).join();
+  const names = new Set(code.match(/\w+/g));
+  const prefixes = code.match(/(?<=")acrobot\w*_estimator(?=")/g);
+  return WebAssembly.Module.exports(new WebAssembly.Module(readFileSync(built)))
+    .filter(({ name }) => names.has(name) || prefixes.some((each) => name.startsWith(each)))
+    .map(({ name }) => ({ name, root: true, export: name }));
+}
+
+/** The functions of bindings/abi with a feature. */
+const compileAbi = (name) => {
+  const features = ["--no-default-features", "--features", name];
+  return compile(name, "../abi", "acrobot", ["-Copt-level=2"], features);
+};
+
 const ESM = { absWorkingDir: process.cwd(), bundle: true, format: "esm" };
 
 /** Writes a file of the package with its module inside: a browser loads it with one request. */
-async function bundle(entry, library) {
-  const module = await optimize(library);
+async function bundle(entry, compiled) {
+  const module = await compiled;
   const exports = WebAssembly.Module.exports(new WebAssembly.Module(module));
   const names = exports.map(({ name }) => name);
   // A string, because all bundlers and servers pass strings on unchanged, and a constructor can
@@ -81,11 +102,10 @@ rmSync("dist", { recursive: true, force: true });
 mkdirSync("dist");
 // Names of the package stay, for messages and debuggers; those of the decompressor become short.
 buildSync({ entryPoints: ["tiny-inflate"], minify: true, outfile: "target/inflate.js", ...ESM });
-compile();
 await Promise.all([
-  bundle("index", "acrobot_npm"),
-  bundle("policies", "acrobot_learner"),
-  bundle("control", "acrobot_control"),
+  bundle("index", compileAbi("acrobots")),
+  bundle("control", compileAbi("control")),
+  bundle("policies", compile("learner", "learner", "acrobot_learner", [], [])),
 ]);
 // npm shows what users need to know.
 writeFileSync("dist/README.md", readFileSync("README.md", "utf8").split("\n## Build and test")[0]);

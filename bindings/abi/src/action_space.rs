@@ -3,10 +3,10 @@
 use core::ptr;
 
 use acrobot::Action;
-use acrobot::numpy::Pcg64;
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 
-use crate::SNAPSHOTS;
-use crate::memory::{Holder, change, check};
+use crate::memory::{Holder, Span, array, change, check, check_apart, read_slice};
+use crate::single::SNAPSHOTS;
 use crate::status::{acrobot_status_t, status};
 
 /// Bytes of an acrobot_action_space_t. The header has this number, too.
@@ -33,6 +33,19 @@ pub unsafe extern "C" fn acrobot_action_space_init(
     status(|| Holder::init(action_space, Pcg64::new(seed)))
 }
 
+/// As acrobot_action_space_init, with a seed of any size: its words of 32 bits, the lowest first.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_action_space_init_with(
+    action_space: *mut acrobot_action_space_t,
+    seed: *const u32,
+    seed_words: usize,
+) -> acrobot_status_t {
+    status(|| {
+        check_apart(&[Span::new(action_space, 1), Span::new(seed, seed_words)])?;
+        Holder::init(action_space, SeedSequence::from_words(read_slice(seed, seed_words)?).into())
+    })
+}
+
 /// Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_action_space_sample(
@@ -42,5 +55,22 @@ pub unsafe extern "C" fn acrobot_action_space_sample(
     change(action_space, action, ptr::null_mut(), |action_space| {
         check(action)?;
         Ok(Action::sample(action_space).into())
+    })
+}
+
+/// Draws an action for each acrobot of a batch: `sample()` of Gymnasium's `MultiDiscrete`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_action_space_sample_each(
+    action_space: *mut acrobot_action_space_t,
+    actions: *mut u8,
+    count: usize,
+) -> acrobot_status_t {
+    change(action_space, ptr::null_mut(), ptr::null_mut(), |rng| {
+        let actions = array(actions, count)?;
+        check_apart(&[Span::new(action_space, 1), Span::of(actions)])?;
+        for index in 0..count {
+            actions.cast::<u8>().add(index).write((3.0 * uniform(rng, 0.0, 1.0)) as u8);
+        }
+        Ok(())
     })
 }

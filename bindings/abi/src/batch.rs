@@ -12,7 +12,7 @@ use acrobot::numpy::Pcg64;
 use acrobot::task::AnyTask;
 
 use crate::data::{acrobot_draws_t, acrobot_observation_t, acrobot_params_t, acrobot_state_t};
-use crate::memory::{Holder, Span, array, change, check, check_apart, get, optional, read};
+use crate::memory::{Holder, Span, array, change, check, check_apart, get, read};
 use crate::single::check_max_steps;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 use crate::task::{acrobot_reset_options_t, read_options, task_of};
@@ -240,6 +240,14 @@ pub unsafe extern "C" fn acrobot_batch_step_torque(
     count: usize,
 ) -> acrobot_status_t {
     step(batch, Inputs::Torques(torques), results, count)
+}
+
+/// An array that the caller may omit: null and without elements then.
+fn optional<T>(start: *mut T, count: usize) -> Result<*mut [T], Rejected> {
+    if start.is_null() {
+        return Ok(ptr::slice_from_raw_parts_mut(start, 0));
+    }
+    array(start, count)
 }
 
 enum Inputs {

@@ -6,7 +6,8 @@ use acrobot::Params;
 use acrobot::control::identify::{self, Fit, Regression, Sample};
 
 use crate::data::acrobot_params_t;
-use crate::memory::{Holder, Span, array, change, check_apart, compute, get, init, read};
+use crate::memory::{Holder, Span, array, change, check_apart, get, init, read};
+use crate::model::compute;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
 /// A sample of a recording, in double precision.

@@ -71,10 +71,6 @@ unsafe extern "C" {
     fn acrobot_has_a_panicking_branch() -> !;
 }
 
-/// Whether there are snapshots: not on microcontrollers, where they would take 64 bytes of each
-/// acrobot.
-const SNAPSHOTS: bool = cfg!(any(target_pointer_width = "64", target_family = "wasm"));
-
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
     // SAFETY: it is never called, because a program that contains this call does not link.

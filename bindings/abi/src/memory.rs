@@ -78,22 +78,6 @@ pub struct Tagged<T: Holder> {
     value: T::Value,
 }
 
-/// Writes a result, or why a number was rejected, where not null.
-pub unsafe fn compute<T>(
-    result: *mut T,
-    error: *mut acrobot_error_t,
-    call: impl FnOnce() -> Result<T, Rejected>,
-) -> acrobot_status_t {
-    status(|| {
-        check(result)?;
-        if !error.is_null() {
-            check(error)?;
-        }
-        result.write(call().inspect_err(|rejected| rejected.explain(error))?);
-        Ok(())
-    })
-}
-
 /// Initializes a holder. Writes why a number was rejected, where not null.
 pub unsafe fn init<H: Holder>(
     holder: *mut H,
@@ -180,14 +164,6 @@ pub fn array<T>(start: *mut T, count: usize) -> Result<*mut [T], Rejected> {
 /// An array of the caller that is valid whatever it contains.
 pub unsafe fn read_slice<'a, T: Copy>(start: *const T, count: usize) -> Result<&'a [T], Rejected> {
     Ok(&*array(start.cast_mut(), count)?)
-}
-
-/// An array that the caller may omit: null and without elements then.
-pub fn optional<T>(start: *mut T, count: usize) -> Result<*mut [T], Rejected> {
-    if start.is_null() {
-        return Ok(ptr::slice_from_raw_parts_mut(start, 0));
-    }
-    array(start, count)
 }
 
 /// Rejects a result or error that would overwrite the holder. The caller may omit it.

@@ -1,13 +1,43 @@
 //! Models of a machine: its equations of motion, linear models, and inverse dynamics.
 
+use core::ffi::c_int;
+
 use acrobot::arithmetic::Damped;
 use acrobot::control::model::{Forces, LinearModel, StepModel};
 use acrobot::physics::Pendulum;
+use acrobot::task::Task;
 use acrobot::{Error, Fast, State};
 
 use crate::data::{acrobot_params_t, acrobot_state_t};
-use crate::memory::{compute, read};
-use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
+use crate::memory::{check, read};
+use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, status};
+use crate::task::task_of;
+
+/// Writes a result, or why a number was rejected, where not null.
+pub unsafe fn compute<T>(
+    result: *mut T,
+    error: *mut acrobot_error_t,
+    call: impl FnOnce() -> Result<T, Rejected>,
+) -> acrobot_status_t {
+    status(|| {
+        check(result)?;
+        if !error.is_null() {
+            check(error)?;
+        }
+        result.write(call().inspect_err(|rejected| rejected.explain(error))?);
+        Ok(())
+    })
+}
+
+/// The default parameters of an ACROBOT_TASK.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_task_params(
+    task: c_int,
+    params: *mut acrobot_params_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    compute(params, error, || Ok(task_of(task)?.params().cast::<f32>().into()))
+}
 
 /// A machine in a state, which is checked.
 pub unsafe fn pendulum(

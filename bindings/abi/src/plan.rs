@@ -10,7 +10,8 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Error, Fast, State};
 
 use crate::data::{acrobot_params_t, acrobot_state_t};
-use crate::memory::{Holder, Span, array, change, check, check_apart, compute, get, init, read};
+use crate::memory::{Holder, Span, array, change, check, check_apart, get, init, read};
+use crate::model::compute;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
 /// The weights of what a plan costs, 0 or more: a larger one makes its term smaller. The defaults
@@ -215,9 +216,9 @@ pub unsafe extern "C" fn acrobot_planner_improve(
         let plan = knots_of(planner, plan.cast_mut(), length)?;
         let improved = knots_of(planner, improved, length)?;
         check_apart(&[Span::of(plan), Span::of(improved)])?;
-        let (start, improved) = (read(start)?.into(), &mut *improved);
-        improved.copy_from_slice(&*plan);
-        Ok(value.improve(start, iterations, improved)?)
+        let start = read(start)?.into();
+        improved.cast::<Knot<f32>>().copy_from_nonoverlapping(plan.cast(), length);
+        Ok(value.improve(start, iterations, &mut *improved)?)
     })
 }
 

@@ -4,8 +4,8 @@ use acrobot::control::model::{LinearModel, StepModel};
 use acrobot::control::regulator::{self, Lqr};
 
 use crate::data::{acrobot_params_t, acrobot_state_t};
-use crate::memory::{Span, array, check, check_apart, compute, read};
-use crate::model::{acrobot_linear_model_t, acrobot_step_model_t, pendulum};
+use crate::memory::{Span, array, check, check_apart, read};
+use crate::model::{acrobot_linear_model_t, acrobot_step_model_t, compute, pendulum};
 use crate::status::{acrobot_error_t, acrobot_status_t};
 
 /// What a regulator weighs: xᵀ Q x + R u² for a deviation x of the state and u of the torque.

@@ -8,7 +8,6 @@ use acrobot::arithmetic::Damped;
 use acrobot::task::{Gymnasium, Task};
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
-use crate::SNAPSHOTS;
 use crate::data::{
     acrobot_draws_t, acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t,
 };
@@ -16,6 +15,10 @@ use crate::linked::Linked;
 use crate::memory::{Holder, Span, change, check, get, init, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 use crate::task::{acrobot_reset_options_t, read_options, task_of};
+
+/// Whether there are snapshots: not on microcontrollers, where they would take 64 bytes of each
+/// acrobot.
+pub const SNAPSHOTS: bool = cfg!(any(target_pointer_width = "64", target_family = "wasm"));
 
 /// Bytes of an acrobot_t. The header has this number, too.
 pub const ACROBOT_SIZE: usize = if SNAPSHOTS { 304 } else { 240 };

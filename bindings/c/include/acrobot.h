@@ -691,6 +691,9 @@ acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
 // The height of the tip above the fixed joint, m.
 acrobot_status_t acrobot_tip_height(const acrobot_t *acrobot, float *height);
 
+// The default parameters of an ACROBOT_TASK.
+acrobot_status_t acrobot_task_params(int task, acrobot_params_t *params, acrobot_error_t *error);
+
 // The deviation of a state from a `target`, with angles wrapped to ±π.
 acrobot_status_t acrobot_deviation_from(const acrobot_state_t *state,
                                         const acrobot_state_t *target,
@@ -976,8 +979,18 @@ acrobot_status_t acrobot_replanner_work(acrobot_replanner_t *replanner);
 // Gymnasium's `action_space.seed(seed)`.
 acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space, uint64_t seed);
 
+// As acrobot_action_space_init, with a seed of any size: its words of 32 bits, the lowest first.
+acrobot_status_t acrobot_action_space_init_with(acrobot_action_space_t *action_space,
+                                                const uint32_t *seed,
+                                                size_t seed_words);
+
 // Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
 acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_space, uint8_t *action);
+
+// Draws an action for each acrobot of a batch: `sample()` of Gymnasium's `MultiDiscrete`.
+acrobot_status_t acrobot_action_space_sample_each(acrobot_action_space_t *action_space,
+                                                  uint8_t *actions,
+                                                  size_t count);
 
 // ACROBOT_BATCH_SIZE(count), or with `own_params` ACROBOT_BATCH_OWN_SIZE(count), but at most
 // SIZE_MAX.

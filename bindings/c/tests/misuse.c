@@ -73,6 +73,7 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     RESULT(ALONE, float, acrobot_energy(acrobot, out)) \
     RESULT(ALONE, float, acrobot_tip_height(acrobot, out)) \
     RESULT(ACTIONS, uint8_t, acrobot_action_space_sample(action_space, out)) \
+    RESULT(ACTIONS, uint8_t, acrobot_action_space_sample_each(action_space, out, 1)) \
     BEGIN(BATCH, acrobot_batch_reset(batch)) \
     BEGIN(BATCH, acrobot_batch_reset_with(batch, &WIDE, NULL)) \
     ERROR(BATCH, acrobot_batch_reset_with(batch, &SWAPPED, out)) \
@@ -290,6 +291,7 @@ static void arguments_of_an_acrobot(void)
     acrobot_params_t params = PARAMS;
     static acrobot_draws_t draws;
     acrobot_reset_options_t options = {NULL, 0, NULL};
+    static const uint32_t SEED[] = {42};
     struct {
         double low, high;
     } bounds;
@@ -298,6 +300,11 @@ static void arguments_of_an_acrobot(void)
     REJECTED(NULL, acrobot_init(NULL, 42));
     REJECTED(MISALIGNED, acrobot_init((acrobot_t *)(void *)(held + ACROBOT_ALIGN / 2), 42));
     REJECTED(NULL, acrobot_action_space_init(NULL, 42));
+    REJECTED(NULL, acrobot_action_space_init_with(NULL, SEED, 1));
+    REJECTED(NULL, acrobot_action_space_init_with((acrobot_action_space_t *)spare, NULL, 1));
+    REJECTED(OVERLAP, acrobot_action_space_init_with((acrobot_action_space_t *)held,
+                                                     (const uint32_t *)held, 1));
+    // The lowest byte of 256 is an action.
     REJECTED(UNKNOWN_ACTION, acrobot_step(acrobot, 256, &step));
     params_rejects("dynamics must be 0 (book) or 1 (NIPS), got 256", params.dynamics = 256);
     expect_message(acrobot_set_max_steps(acrobot, 0, &error),

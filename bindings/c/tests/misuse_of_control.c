@@ -134,6 +134,8 @@ static void wrong_numbers(void)
 {
     acrobot_knot_t knot = a_knot;
     acrobot_sample_t sample = STILL;
+    REJECTED(NULL, acrobot_task_params(0, NULL, &error));
+    REJECTS(OUT_OF_RANGE, "task", acrobot_params_t, acrobot_task_params(3, out, &error));
     REJECTS(OUT_OF_RANGE, "dtheta2", acrobot_state_t,
             acrobot_deviation_from(&FASTEST, &BACK, out, &error));
     REJECTS(OUT_OF_RANGE, "mass1", acrobot_rates_t,

@@ -255,15 +255,36 @@ static void controllers(void)
     knot.gain.dtheta1 = 2;
     ACCEPTED(acrobot_plan_torque(&knot, 1, &after, 0, &FAST, &torque, NULL));
     CHECK(near(torque, knot.torque - 2));
+    ACCEPTED(acrobot_task_params(ACROBOT_TASK_BALANCE, &params, NULL));
+    CHECK(params.dt == .02f && params.torques[2] == 10 && params.mass1 == 1);
 
     // With a bent elbow the motor holds link 2.
     ACCEPTED(acrobot_problem_init(&problem, &params, 10, 1, NULL));
     CHECK(near(problem.target.theta1, 2.9082393f) && near(problem.torque, -3.3992471f));
 }
 
+static void actions(void)
+{
+    // Gymnasium's MultiDiscrete([3] * 6) with the seed 42.
+    static const uint8_t EXPECTED[] = {2, 1, 2, 2, 0, 2};
+    static const uint32_t SEED[] = {42};
+    acrobot_action_space_t action_space, twin;
+    uint8_t actions[6], action, twins;
+    ACCEPTED(acrobot_action_space_init(&action_space, 42));
+    ACCEPTED(acrobot_action_space_init_with(&twin, SEED, 1));
+    ACCEPTED(acrobot_action_space_sample_each(&action_space, actions, 6));
+    CHECK(same(actions, EXPECTED, sizeof actions));
+    ACCEPTED(acrobot_action_space_sample_each(&twin, actions, 6));
+    ACCEPTED(acrobot_action_space_sample(&action_space, &action));
+    ACCEPTED(acrobot_action_space_sample(&twin, &twins));
+    CHECK(same(actions, EXPECTED, sizeof actions) && action == twins);
+}
+
 int main(void)
 {
     an_acrobot();
+    actions();
+    drawn_parameters();
     a_batch();
     swing_ups();
     controllers();

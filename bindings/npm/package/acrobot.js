@@ -1,92 +1,149 @@
-// One acrobot: in the module, a batch of one.
+// One acrobot.
 
+import { draw } from "./draw.js";
 import {
-  ACTION, Environment, TASKS, drawOne, isAction, load, readState, setState,
+  ACTION, NONE, TASKS, isAction, readDraws, readOptions, sample, save,
 } from "./environment.js";
-import { addressOf, call, writeSeed } from "./kept.js";
-import { integers, invalid, invalidSingle, isFinite32, numbers, wasm } from "./wasm.js";
+import {
+  Kept, accept, addressOf, allFields, bytesAt, call, hold, orFree, pack, paramsOf, read, readChanges,
+  resetOptions, scratch, unpack, wasm,
+} from "./kept.js";
+import { SIZES, STRUCTS } from "./layout.js";
+import { copied, invalid, invalidSingle, isFinite32, randomSeed } from "./wasm.js";
 
-/** A loop, because `slice` takes half as long again. */
-function observation() {
-  const [from, to] = [numbers(), new Float32Array(6)];
-  for (let i = 0; i < 6; i++) to[i] = from[i];
-  return to;
+const { acrobot_params_t: PARAMS, acrobot_state_t: STATE } = STRUCTS;
+
+/** A copy of an observation, by a loop, because `slice` takes half as long again. */
+function observationOf(numbers) {
+  const observation = new Float32Array(6);
+  for (let i = 0; i < 6; i++) observation[i] = numbers[i];
+  return observation;
 }
 
-function results(flags) {
-  const [terminated, truncated] = [(flags & 1) !== 0, (flags & 2) !== 0];
-  return { observation: observation(), reward: numbers()[6], terminated, truncated };
+/** Reads an acrobot_step_t. */
+function resultsOf({ numbers, flags }) {
+  const [terminated, truncated] = [flags[28] !== 0, flags[29] !== 0];
+  return { observation: observationOf(numbers), reward: numbers[6], terminated, truncated };
 }
 
-export class Acrobot extends Environment {
+export class Acrobot extends Kept {
+  static kind = "acrobot";
+
+  /** The last action, or `NONE` and the last torque, for a picture. */
+  #action = NONE;
+  #torque = 0;
+  #draws;
+
   constructor(options = {}) {
-    super("acrobot", options, { count: 1, autoreset: "Disabled", ownParams: true });
+    const { seed, params, maxSteps, task, draws } = readOptions(options);
+    super();
+    hold(this, SIZES.acrobot + SIZES.actionSpace, () => {
+      call({}, "acrobot_init_task", this, task, 0n);
+      if (maxSteps !== undefined) call({}, "acrobot_set_max_steps", this, maxSteps);
+      this.#change(params, draws);
+      this.reset(seed);
+      this.sample(randomSeed());
+    });
   }
 
   static restore(snapshot) {
+    const bytes = copied("the snapshot", snapshot);
     const acrobot = new this();
-    load(acrobot, snapshot);
+    orFree(acrobot, () => call(bytes, "acrobot_load", acrobot, bytes, bytes.length));
     return acrobot;
   }
 
   reset(seed) {
-    call(this, "reset", writeSeed(seed));
-    return observation();
+    call({}, "acrobot_reset_with", this, resetOptions(seed), 0);
+    if (this.#draws) call({}, "acrobot_draw_params", this, this.#draws.words);
+    [this.#action, this.#torque] = [NONE, 0];
+    return this.observation;
   }
 
   step(action) {
     if (!isAction(action)) throw invalid(`action ${ACTION}`, action);
-    return results(wasm().step_action(addressOf(this), action));
+    const [address, views] = [addressOf(this), scratch()];
+    accept(wasm().acrobot_step(address, action, views.result));
+    this.#action = action;
+    return resultsOf(views);
   }
 
   stepTorque(torque) {
     if (!isFinite32(torque)) throw invalidSingle("torque must be a finite number of N m", torque);
-    return results(wasm().step_torque(addressOf(this), torque));
+    const [address, views] = [addressOf(this), scratch()];
+    accept(wasm().acrobot_step_torque(address, torque, views.result, 0));
+    [this.#action, this.#torque] = [NONE, torque];
+    return resultsOf(views);
   }
 
   sample(seed) {
-    return call(this, "sample", writeSeed(seed));
+    const space = addressOf(this) + SIZES.acrobot;
+    return sample(space, seed, "acrobot_action_space_sample", new Uint8Array(1))[0];
+  }
+
+  /** A copy tries parameters and draws, because a reset must not reject what it draws. */
+  #change(params, draws) {
+    const words = pack(paramsOf("acrobot_params", this), params, PARAMS);
+    const copy = bytesAt(addressOf(this), SIZES.acrobot).slice();
+    call(params, "acrobot_set_params", copy, words);
+    if (draws) call(draws.given, "acrobot_draw_params", copy, draws.words);
+    call(params, "acrobot_set_params", this, words);
+    this.#draws = draws;
+  }
+
+  get params() {
+    return unpack(paramsOf("acrobot_params", this), PARAMS);
+  }
+
+  setParams(changes) {
+    this.#change(readChanges(changes), this.#draws);
+  }
+
+  setDraws(draws) {
+    this.#change({}, readDraws(draws));
   }
 
   get observation() {
-    call(this, "observe");
-    return observation();
+    const [address, views] = [addressOf(this), scratch()];
+    accept(wasm().acrobot_observe(address, views.result));
+    return observationOf(views.numbers);
   }
 
   get state() {
-    return readState(this, 0);
+    return unpack(read("acrobot_state", addressOf(this)).numbers, STATE);
   }
 
   set state(state) {
-    setState(this, state, 0);
+    const given = allFields("state", state, STATE);
+    call(given, "acrobot_set_state", this, pack(new Float32Array(4), given, STATE));
   }
 
   get energy() {
-    call(this, "read_one", 0);
-    return numbers()[4];
+    return read("acrobot_energy", addressOf(this)).numbers[0];
   }
 
   get tipHeight() {
-    call(this, "read_one", 0);
-    return numbers()[5];
+    return read("acrobot_tip_height", addressOf(this)).numbers[0];
   }
 
   get elapsedSteps() {
-    call(this, "read_one", 0);
-    return integers()[7];
+    return read("acrobot_elapsed_steps", addressOf(this)).integers[0];
   }
 
   get maxSteps() {
-    call(this, "settings");
-    return integers()[1];
+    return read("acrobot_max_steps", addressOf(this)).integers[0];
   }
 
   get task() {
-    call(this, "settings");
-    return TASKS[integers()[4]];
+    return TASKS[read("acrobot_task", addressOf(this)).integers[0]];
+  }
+
+  snapshot() {
+    return save("acrobot_save", this, SIZES.snapshot);
   }
 
   draw(context, options) {
-    drawOne(this, 0, context, options);
+    const { params, state } = this;
+    draw(context, state, params, params.torques[this.#action] ?? this.#torque, options);
   }
 }

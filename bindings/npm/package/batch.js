@@ -1,16 +1,24 @@
 // Many acrobots.
 
+import { draw } from "./draw.js";
 import {
-  ACTION, AUTORESETS, Environment, TASKS, changeParams, drawOne, isAction, load, readParams,
-  readState, setState,
+  ACTION, NONE, TASKS, isAction, readDraws, readOptions, sample, save,
 } from "./environment.js";
-import { addressOf, call, elements, writeSeed } from "./kept.js";
-import { integers, invalid, isFinite32, numbers, wasm } from "./wasm.js";
+import {
+  Kept, accept, addressOf, allFields, call, elements, hold, indexOf, pack, padded, paramsOf, read,
+  readChanges, resetOptions, unpack, wasm,
+} from "./kept.js";
+import { SIZES, STRUCTS } from "./layout.js";
+import { copied, invalid, isFinite32, positive, randomSeed } from "./wasm.js";
 
-/**
- * The results, and what JavaScript writes, in the order of the module's addresses: type, and number
- * of elements of an acrobot.
- */
+const {
+  acrobot_batch_results_t: RESULTS, acrobot_batch_settings_t: SETTINGS, acrobot_params_t: PARAMS,
+  acrobot_state_t: STATE,
+} = STRUCTS;
+
+const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
+
+/** The arrays in the module: type, and number of elements of an acrobot. */
 const ARRAYS = {
   observations: [Float32Array, 6],
   rewards: [Float32Array, 1],
@@ -19,13 +27,16 @@ const ARRAYS = {
   done: [Uint8Array, 1],
   finalObservations: [Float32Array, 6],
   actions: [Uint8Array, 1],
-  mask: [Uint8Array, 1],
   torques: [Float32Array, 1],
+  mask: [Uint8Array, 1],
 };
 
-export class Batch extends Environment {
+export class Batch extends Kept {
+  static kind = "batch";
+
   #settings;
-  #addresses;
+  /** Where arrays are after the batch, in bytes. */
+  #places = {};
   /** They end when the module's memory grows. */
   #views = {};
   #results = {};
@@ -33,56 +44,118 @@ export class Batch extends Environment {
   #stale = false;
 
   constructor(options) {
-    super("batch", options, {}, ["count", "autoreset", "ownParams"]);
-    this.#open();
+    const given = readOptions(options, ["count", "autoreset", "ownParams"]);
+    const { seed, params, maxSteps, task, draws } = given;
+    const { count, autoreset = AUTORESETS[0], ownParams = draws !== undefined } = given;
+    positive("count", count);
+    const mode = indexOf("autoreset", AUTORESETS, autoreset);
+    if (typeof ownParams !== "boolean") {
+      throw invalid("ownParams must be true or false", ownParams, []);
+    }
+    super();
+    this.#make(count, ownParams, (size, batch) => {
+      call({}, "acrobot_batch_init", this, size, count, task, ownParams, 0n, batch);
+      call({}, "acrobot_batch_set_autoreset", this, mode);
+      if (maxSteps !== undefined) call({}, "acrobot_batch_set_max_steps", this, maxSteps);
+      call(params, "acrobot_batch_set_all_params", this, this.#changed(0, params));
+      if (draws) call(draws.given, "acrobot_batch_set_draws", this, draws.words);
+      call({}, "acrobot_batch_reset_with", this, resetOptions(seed));
+    });
   }
 
   static restore(snapshot) {
+    const bytes = copied("the snapshot", snapshot);
+    const { length } = bytes;
+    const [count, own] = [new Uint32Array(1), new Uint8Array(1)];
+    call(bytes, "acrobot_batch_saved_count", bytes, length, count, own);
     const batch = new this({ count: 1 });
-    load(batch, snapshot);
-    batch.#open();
+    batch.#make(count[0], own[0] !== 0, (size, to) =>
+      call(bytes, "acrobot_batch_load", batch, size, bytes, length, to),
+    );
     return batch;
   }
 
-  /** Reads what does not change except by `restore`. */
+  /** Makes memory for the batch, random actions and arrays. `init` makes the batch. */
+  #make(count, ownParams, init) {
+    const size = wasm().acrobot_batch_size(count, ownParams) >>> 0;
+    let end = padded(size);
+    const place = (name, bytes) => {
+      this.#places[name] = end;
+      end += padded(bytes);
+    };
+    place("space", SIZES.actionSpace);
+    place("pointers", 4 * Object.keys(RESULTS).length);
+    for (const [name, [Type, width]] of Object.entries(ARRAYS)) {
+      place(name, Type.BYTES_PER_ELEMENT * width * count);
+    }
+    const make = () => {
+      init(size, new Uint32Array(1));
+      this.#open();
+    };
+    hold(this, end, make, "acrobots", count);
+  }
+
+  /** Reads what does not change, and writes the addresses of the results. */
   #open() {
-    call(this, "settings");
-    const [count, maxSteps, mode, own, task] = integers();
-    const [autoreset, ownParams] = [AUTORESETS[mode], own === 1];
-    this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams, task: TASKS[task] });
-    this.#addresses = integers().slice(5, 14);
-    this.#views = {};
-    this.#results = {};
+    const { integers } = read("acrobot_batch_settings", addressOf(this));
+    const { count, task, ownParams, autoreset, maxSteps } = unpack(integers, SETTINGS);
+    this.#settings = Object.freeze({
+      count,
+      maxSteps,
+      autoreset: AUTORESETS[autoreset],
+      ownParams: (ownParams & 1) !== 0, // one byte
+      task: TASKS[task],
+    });
+    [this.#views, this.#results] = [{}, {}];
+    const { pointers, actions, done } = this.#view();
+    for (const [name, [word]] of Object.entries(RESULTS)) {
+      const isNull = name === "finalObservations" && this.#settings.autoreset !== "SameStep";
+      pointers[word] = isNull ? 0 : addressOf(this) + this.#places[name];
+    }
+    actions.fill(NONE);
+    for (let i = 0; i < count; i++) {
+      done[i] = read("acrobot_batch_is_done", addressOf(this), i).flags[0];
+    }
+    this.sample(randomSeed());
     this.#observe();
     this.#copyResults();
   }
 
-  #view(name) {
-    if (!this.#views[name]?.length) {
-      const [Type, width] = ARRAYS[name];
-      const address = this.#addresses[Object.keys(ARRAYS).indexOf(name)];
+  /** The arrays in the module. Words have the flags of four acrobots each. */
+  #view() {
+    if (!this.#views.rewards?.length) {
       const { buffer } = wasm().memory;
-      this.#views[name] = new Type(buffer, address, width * this.#settings.count);
+      const view = (name, Type, length) =>
+        new Type(buffer, addressOf(this) + this.#places[name], length);
+      const { count } = this.#settings;
+      for (const [name, [Type, width]] of Object.entries(ARRAYS)) {
+        this.#views[name] = view(name, Type, width * count);
+      }
+      this.#views.pointers = view("pointers", Uint32Array, Object.keys(RESULTS).length);
+      this.#views.words = ["done", "terminated", "truncated"].map((name) =>
+        view(name, Uint32Array, Math.ceil(count / 4)),
+      );
     }
-    return this.#views[name];
+    return this.#views;
   }
 
-  #copy(name) {
+  #copy(name, view = this.#view()[name]) {
     // An array that the caller has transferred to another thread has no elements.
-    if (this.#results[name]?.length) this.#results[name].set(this.#view(name));
-    else this.#results[name] = this.#view(name).slice();
+    if (this.#results[name]?.length) this.#results[name].set(view);
+    else this.#results[name] = view.slice();
   }
 
-  #copyResults() {
+  #copyResults(views = this.#view()) {
     for (const name of ["observations", "rewards", "terminated", "truncated", "done"]) {
-      this.#copy(name);
+      this.#copy(name, views[name]);
     }
     if (this.#settings.autoreset === "SameStep") this.#copy("finalObservations");
     this.#stale = false;
   }
 
   #observe() {
-    call(this, "observe");
+    const { observations } = this.#view();
+    accept(wasm().acrobot_batch_observe(addressOf(this), observations.byteOffset, this.count));
     this.#copy("observations");
     this.#stale = false;
   }
@@ -112,19 +185,20 @@ export class Batch extends Environment {
 
   resetMasked(mask, seed) {
     const isFlag = (element) => [true, false, 1, 0].includes(element);
-    const flags = elements("mask", mask, this.count, isFlag, "must be true, false, 1 or 0");
-    const words = writeSeed(seed);
-    const address = addressOf(this);
-    this.#view("mask").set(flags);
-    wasm().reset(address, words);
-    this.#copy("observations");
-    this.#stale = false;
+    const given = elements("mask", mask, this.count, isFlag, "must be true, false, 1 or 0");
+    const flags = Uint8Array.from(given);
+    call({}, "acrobot_batch_reset_masked", this, flags, this.count, resetOptions(seed));
+    const { actions, torques, done } = this.#view();
+    flags.forEach((flag, i) => {
+      if (flag) [actions[i], torques[i], done[i]] = [NONE, 0, 0];
+    });
+    this.#observe();
     return this.#results.observations;
   }
 
   sample(seed) {
-    call(this, "sample", writeSeed(seed));
-    return this.#view("actions").slice();
+    const [space, actions] = [addressOf(this) + this.#places.space, new Uint8Array(this.count)];
+    return sample(space, seed, "acrobot_action_space_sample_each", actions, this.count);
   }
 
   step(actions) {
@@ -137,69 +211,116 @@ export class Batch extends Environment {
 
   #step(what, given, isValid, rule) {
     const [Type] = ARRAYS[what];
-    const { count } = this.#settings;
+    const { count, autoreset } = this.#settings;
     // The module checks elements of this type. `isView` is false for a proxy, which can run code.
     const isRead = ArrayBuffer.isView(given) && given instanceof Type && given.length === count;
     const inputs = isRead ? given : elements(what, given, count, isValid, rule);
     const address = addressOf(this);
-    const written = this.#view(what);
+    const views = this.#view();
+    const [written, { pointers }] = [views[what], views];
     written.set(inputs);
-    if (!wasm().step(address, what === "torques")) {
+    const isTorque = what === "torques";
+    const step = isTorque ? wasm().acrobot_batch_step_torque : wasm().acrobot_batch_step;
+    if (step(address, written.byteOffset, pointers.byteOffset, count) !== 0) {
       const index = written.findIndex((each) => !isValid(each));
       throw invalid(`${what}[${index}] ${rule}`, written[index]);
     }
-    this.#copyResults();
+    if (isTorque) views.actions.fill(NONE);
+    const [done, terminated, truncated] = views.words;
+    const lasting = autoreset === "Disabled" ? ~0 : 0;
+    for (let i = 0; i < done.length; i++) {
+      done[i] = (done[i] & lasting) | terminated[i] | truncated[i];
+    }
+    this.#copyResults(views);
     return { ...this.#results };
   }
 
   stateOf(index) {
     this.#checkIndex(index);
-    return readState(this, index);
+    return unpack(read("acrobot_batch_state", addressOf(this), index).numbers, STATE);
   }
 
   setStateOf(index, state) {
     this.#checkIndex(index);
-    setState(this, state, index);
+    const given = allFields("state", state, STATE);
+    const words = pack(new Float32Array(4), given, STATE);
+    call(given, "acrobot_batch_set_state", this, index, words);
     this.#stale = true;
   }
 
   get states() {
     const states = new Float32Array(4 * this.count);
     for (let i = 0; i < this.count; i++) {
-      call(this, "read_one", i);
-      states.set(numbers().subarray(0, 4), 4 * i);
+      const { numbers } = read("acrobot_batch_state", addressOf(this), i);
+      states.set(numbers.subarray(0, 4), 4 * i);
     }
     return states;
   }
 
   setStates(states) {
     const rule = "must be a finite number of rad or rad/s";
-    const given = elements("states", states, 4 * this.count, isFinite32, rule);
+    const given = Float32Array.from(elements("states", states, 4 * this.count, isFinite32, rule));
     for (let i = 0; i < this.count; i++) {
-      numbers().set(given.slice(4 * i, 4 * i + 4));
-      call(this, "set_state", i);
+      call({}, "acrobot_batch_set_state", this, i, given.slice(4 * i, 4 * i + 4));
     }
     this.#stale = true;
   }
 
   elapsedStepsOf(index) {
     this.#checkIndex(index);
-    call(this, "read_one", index);
-    return integers()[7];
+    return read("acrobot_batch_elapsed_steps", addressOf(this), index).integers[0];
+  }
+
+  get params() {
+    return this.paramsOf(0);
   }
 
   paramsOf(index) {
     this.#checkIndex(index);
-    return readParams(this, index);
+    return unpack(paramsOf("acrobot_batch_params", this, index), PARAMS);
+  }
+
+  /** The words of the parameters of an acrobot, of which some change. */
+  #changed(index, changes) {
+    return pack(paramsOf("acrobot_batch_params", this, index), changes, PARAMS);
   }
 
   setParamsOf(index, changes) {
     this.#checkIndex(index);
-    changeParams(this, changes, index);
+    this.#setParams([index], readChanges(changes));
+  }
+
+  setParams(changes) {
+    const given = readChanges(changes);
+    if (this.#settings.ownParams) this.#setParams([...Array(this.count).keys()], given);
+    else call(given, "acrobot_batch_set_all_params", this, this.#changed(0, given));
+  }
+
+  /** Changes acrobots with own parameters: all, or none if one rejects the changes. */
+  #setParams(indices, changes) {
+    const before = indices.map((index) => this.#changed(index, {}));
+    const set = (given, index, words) =>
+      call(given, "acrobot_batch_set_params", this, index, words);
+    try {
+      for (const index of indices) set(changes, index, this.#changed(index, changes));
+    } catch (error) {
+      before.forEach((words, i) => set({}, indices[i], words));
+      throw error;
+    }
+  }
+
+  setDraws(draws) {
+    const { given, words } = readDraws(draws);
+    call(given, "acrobot_batch_set_draws", this, words);
+  }
+
+  snapshot() {
+    return save("acrobot_batch_save", this, wasm().acrobot_batch_snapshot_size(this.count) >>> 0);
   }
 
   draw(context, index, options) {
-    this.#checkIndex(index);
-    drawOne(this, index, context, options);
+    const [params, state] = [this.paramsOf(index), this.stateOf(index)];
+    const { actions, torques } = this.#view();
+    draw(context, state, params, params.torques[actions[index]] ?? torques[index], options);
   }
 }

@@ -30,7 +30,43 @@ export interface Regulator {
 }
 
 // Parameters that are not given are Gymnasium's, with friction of 0. An invalid argument throws a
-// `RangeError` or `TypeError`.
+// `RangeError` or `TypeError`, and changes nothing.
+
+/** The deviation of a state from a target, with angles wrapped to ±π. */
+export function deviationFrom(state: Readonly<State>, target: Readonly<State>): Readonly<State>;
+
+/** Angular velocities, rad/s, and accelerations, rad/s². */
+export interface Rates {
+  dtheta1: number;
+  dtheta2: number;
+  ddtheta1: number;
+  ddtheta2: number;
+}
+
+/** How fast a state changes under a torque, N m. */
+export function derivative(
+  state: Readonly<State>, torque: number, params: Readonly<Partial<Params>>,
+): Readonly<Rates>;
+
+/** The mass matrix M by rows, kg m²: the kinetic energy is half of vᵀ M v for the velocities v. */
+export function massMatrix(
+  state: Readonly<State>, params: Readonly<Partial<Params>>,
+): Float32Array[];
+
+/** The torques and forces of a motion. */
+export interface Forces {
+  /** On θ1, 0 for an acrobot, and on θ2, that of the motor, N m. */
+  torques: readonly [number, number];
+  /** Of the fixed joint on link 1, to the right and up, N. */
+  reaction: readonly [number, number];
+  /** The same of link 1 on link 2. */
+  elbow: readonly [number, number];
+}
+
+/** What accelerations, rad/s², need in a state: the inverse of `derivative`. */
+export function inverseDynamics(
+  state: Readonly<State>, ddtheta1: number, ddtheta2: number, params: Readonly<Partial<Params>>,
+): Readonly<Forces>;
 
 /** The equations of motion about a state and a torque, N m: ẋ = A x + B u. */
 export function linearize(
@@ -44,12 +80,27 @@ export function linearizeStep(
 
 /**
  * The regulator with the least sum of xᵀ Q x + R u² over all steps, about an equilibrium: by
- * default upright, with a torque of 0. Throws if the state is none, or if there is no such
+ * default upright, with a torque of 0. Throws if the target is none, or if there is no such
  * regulator.
  */
 export function regulator(
-  params: Readonly<Partial<Params>>, q: Matrix, r: number, state?: Readonly<State>, torque?: number,
+  params: Readonly<Partial<Params>>, q: Matrix, r: number, target?: Readonly<State>,
+  torque?: number,
 ): Regulator;
+
+/** The regulator of a model in continuous time: the least integral of xᵀ Q x + R u². */
+export function lqr(model: Readonly<LinearModel>, q: Matrix, r: number): Regulator;
+
+/** The regulator of a model of steps: the least sum of xᵀ Q x + R u². */
+export function dlqr(model: Readonly<StepModel>, q: Matrix, r: number): Regulator;
+
+/**
+ * The regulator along a trajectory with a model for each step, and with P of xᵀ P x, the cost after
+ * it. Returns K for each step, and P before the first.
+ */
+export function tvlqr(
+  models: ArrayLike<Readonly<StepModel>>, q: Matrix, r: number, costToGo: Matrix,
+): { gains: Float32Array[]; costToGo: Float32Array[] };
 
 /**
  * What a plan costs. A larger weight, of at least 0, makes its term smaller. Defaults follow from
@@ -105,6 +156,8 @@ export interface Plan {
   torques: Float32Array;
   /** K of torque − K x for the deviation x from the state, N m per rad and per rad/s. */
   gains: Float32Array;
+  /** Two numbers for each step, for `improve`. */
+  workspace: Float32Array;
   /** What holds the target after the steps: the numbers of Rust's `Feedback`. */
   after: Float32Array;
 }
@@ -113,16 +166,24 @@ export interface Plan {
 export function planTorque(plan: Plan, step: number, state: Readonly<State>): number;
 
 export interface PlanOptions {
-  /** The most steps of a plan, from 1. */
+  /** The most steps of a plan, from 1 to 65,535. */
   steps: number;
   /** The most tries, from 1 to 2^32 − 1. Default: 64. */
   tries?: number;
-  /** The seed of the first guesses. Default: random. */
+  /** The seed of the first guesses, below 2^64. Default: random. */
   seed?: Seed;
 }
 
+/** What has memory in WebAssembly. After `free()` methods throw an `Error`. */
+declare abstract class Kept {
+  /** Frees the memory in WebAssembly now, and not when the garbage collector does. */
+  free(): void;
+  /** Calls `free()`: for `using`. */
+  [Symbol.dispose](): void;
+}
+
 /** Plans motions to a target: bit-identical to Rust's `Planner<Damped<Fast>>`. */
-export class Planner {
+export class Planner extends Kept {
   /**
    * For a largest torque, N m, and parameters whose `dt` is the time between two decisions. The
    * target is upright, or balanced with an `elbow` angle, rad. No plan reaches the bounds of the
@@ -135,26 +196,124 @@ export class Planner {
   /** A plan from a state to the target, or `null` if no try has found one. May take seconds. */
   plan(start: Readonly<State>, options: PlanOptions): Plan | null;
   /**
-   * Improves a plan in place, which then begins in the state `start`. Returns its cost: the lower,
-   * the better.
+   * Improves a plan in place, which then begins in the state `start`, by 1 to 2^32 − 1 iterations
+   * at most. Returns its cost: the lower, the better. If it throws, the plan is unchanged.
    */
   improve(start: Readonly<State>, iterations: number, plan: Plan): number;
-  /** As that of an acrobot. */
-  free(): void;
-  /** Calls `free()`: for `using`. */
-  [Symbol.dispose](): void;
+  /**
+   * Plans for a simulation that clamps velocities at the bounds of its parameters, as Gymnasium's
+   * does. Plans may use that as a brake. Returns the planner.
+   */
+  withVelocityClamp(): this;
+  /** Whether what holds after a plan takes the machine from this state to the target. */
+  holdsFrom(state: Readonly<State>): boolean;
 }
 
 /** Swings up without a plan: pumps energy, and then holds. Bit-identical to Rust's `SwingUp`. */
-export class SwingUp {
+export class SwingUp extends Kept {
   /** For a largest torque, N m, and parameters whose `dt` is the time between two decisions. */
   constructor(params: Readonly<Partial<Params>>, limit: number);
   /** The torque at a state, N m, up to the largest. */
   torque(state: Readonly<State>): number;
-  /** As that of an acrobot. */
-  free(): void;
-  /** Calls `free()`: for `using`. */
-  [Symbol.dispose](): void;
+}
+
+/** The noise of a machine. */
+export interface Noise {
+  /**
+   * The standard deviation of a measured angle, rad; above 0 and at most 2. An encoder with n
+   * counts for a turn has 1.8 / n.
+   */
+  angleStd: number;
+  /** The standard deviation of the torque that acts, N m; above 0. */
+  torqueStd: number;
+}
+
+declare abstract class Filter extends Kept {
+  /** Corrects the estimate by measured angles, rad. The first ones are taken as they are. */
+  correct(theta1: number, theta2: number): void;
+  /**
+   * Takes a step of `dt` with a torque, N m. If it throws because a joint turns by more than half a
+   * turn or a number overflows, the next measurement begins again.
+   */
+  predict(torque: number): void;
+  /** The estimated state. */
+  get state(): Readonly<State>;
+  /** The standard deviations of the state; Infinity before a measurement. */
+  get stateStd(): Readonly<State>;
+}
+
+/** Estimates the state of a machine from its angles: correct, decide and predict in each `dt`. */
+export class Estimator extends Filter {
+  constructor(params: Readonly<Partial<Params>>, noise: Readonly<Noise>);
+}
+
+/** The parameters that can be estimated. */
+export type Estimated =
+  | "mass1" | "mass2" | "length1" | "inertia1" | "inertia2"
+  | "damping1" | "damping2" | "coulomb1" | "coulomb2" | "rotor";
+
+/** As `Estimator`, and estimates the parameters that have a standard deviation above 0. */
+export class ParameterEstimator extends Filter {
+  constructor(
+    params: Readonly<Partial<Params>>, std: Readonly<Partial<Record<Estimated, number>>>,
+    noise: Readonly<Noise>,
+  );
+  /** The estimated parameters, and those that are known. */
+  get params(): Readonly<Params>;
+}
+
+/** What a machine did, with a sample in each `dt`. */
+export interface Recording {
+  /** θ1 and θ2 of each sample, rad, without jumps by whole turns. */
+  angles: ArrayLike<number>;
+  /** The motor's torque from each sample to the next, N m. */
+  torques: ArrayLike<number>;
+}
+
+/** The parameters of a machine whose lengths and `dt` are given. */
+export function identify(
+  recording: Readonly<Recording>, params: Readonly<Partial<Params>>,
+): Readonly<Params>;
+
+/**
+ * The root of the mean square of the errors of angles, rad, if they are predicted `horizon` steps
+ * ahead; 0 for a recording that is too short.
+ */
+export function predictionError(
+  params: Readonly<Partial<Params>>, recording: Readonly<Recording>, horizon: number,
+): number;
+
+/** A machine with encoders. */
+export interface Settings {
+  /** `dt` is the time from a tick to the next. */
+  params: Readonly<Partial<Params>>;
+  /** The motor's largest torque, N m. */
+  limit: number;
+  /** The counts of each encoder for a turn, above 0. */
+  counts: readonly [number, number];
+  /** Ticks from a decision to the next, from 1, such as 5 of 2 ms. */
+  ticks: number;
+}
+
+/** From encoder counts to torques: estimates the state, and follows a plan of 100 decisions. */
+export class Controller extends Kept {
+  /** Without a plan its torque is 0. */
+  constructor(settings: Readonly<Settings>);
+  /** The torque until the next tick, N m, from what both encoders count. */
+  tick(count1: number, count2: number): number;
+  /** The estimated state. */
+  get state(): Readonly<State>;
+  /** The estimated parameters. */
+  get params(): Readonly<Params>;
+}
+
+/** Plans for a controller while the machine moves. */
+export class Replanner extends Kept {
+  constructor(settings: Readonly<Settings>);
+  /** Gives the controller the plan once it is due, and takes its estimates. It is short. */
+  exchange(controller: Controller): void;
+  /** Plans for some milliseconds to tens of them: once after each `exchange`. */
+  work(): void;
 }
 
 // For the module of this file.

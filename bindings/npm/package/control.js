@@ -1,190 +1,238 @@
-// Linear models, regulators, plans and swinging up without one, in a separate module, as
-// control.d.ts describes them.
+// Control in a separate module, as control.d.ts describes it.
 
 import {
-  Kept, accept, allocated, call, checkNumber, elements, parameters, readSlots, writeSeed,
-  writeSlots, writeState,
+  Kept, allFields, call, checkNumber, elements, empty, fields, hold, lengthOf, matrix, pack,
+  paramsOf, readChanges, unpack,
 } from "./kept.js";
-import {
-  camelCase, checked, integers, invalid, isFinite32, isNumber, numbers, positive, randomSeed, text,
-  wasm,
-} from "./wasm.js";
+import { SIZES, STRUCTS } from "./layout.js";
+import { checked, invalid, isFinite32, positive, randomSeed, seedWords } from "./wasm.js";
 
 export { moduleBytes, setModule } from "./wasm.js";
 
-/** The weights of a plan's cost, in the order of the module: their words follow the parameters. */
-const COST = [
-  "angles[0]", "angles[1]", "torque", "torqueChange", "power", "below", "height", "margin",
-  "arrival",
-];
-/**
- * The first words of a regulator's weights, of a cost's matrices, and of a state, which is written
- * after all other arguments, because reading these can run code.
- */
-const [WEIGHTS, MATRICES, STATE_WORD] = [22, 31, 64];
+const {
+  acrobot_cost_t: COST, acrobot_feedback_t: FEEDBACK, acrobot_forces_t: FORCES,
+  acrobot_knot_t: KNOT, acrobot_linear_model_t: MODEL,
+  acrobot_lqr_t: LQR, acrobot_noise_t: NOISE, acrobot_params_t: PARAMS,
+  acrobot_parameter_std_t: STD, acrobot_problem_t: PROBLEM, acrobot_rates_t: RATES,
+  acrobot_settings_t: SETTINGS, acrobot_state_t: STATE, acrobot_weights_t: WEIGHTS,
+} = STRUCTS;
+
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
 
-/** Rust's messages, by the kind of error less 4. */
-const MESSAGES = [
-  (value, name) => `${name} must be finite in each element, got ${value}`,
-  (value, name, other) =>
-    `${name} must be symmetric, got ${value} and ${other} on both sides of the diagonal`,
-  (value, name) =>
-    `${name} must be positive semidefinite, got elements of up to ${value} in size after the ` +
-    "elimination of its positive pivots",
-  (value) =>
-    "the state must be in equilibrium: at rest, accelerating at most 0.25 % of a fall, " +
-    `got ${value}`,
-  () => "the torque must reach each motion that grows or persists, but does not reach one",
-  () => "q must weight each motion that persists, but does not weight one",
-  (value) => `the relative error of the gain must be at most 1e-9, got ${value}`,
-];
-const NOT_FOUND = 11;
+/** The words of Gymnasium's parameters with changes. */
+const machine = (changes) => pack(paramsOf("acrobot_task_params", 0), changes, PARAMS);
 
-/** As `accept`, with the errors of models and regulators. */
-function acceptAll(kind, given) {
-  if (kind < 4) return accept(kind, given);
-  const [value, , , other] = numbers();
-  throw new RangeError(MESSAGES[kind - 4](value, camelCase(text(1)), other));
+/** A copy of a state, and its words. */
+function readState(state, what = "state") {
+  const given = allFields(what, state, STATE);
+  return [given, pack(empty(STATE), given, STATE)];
 }
 
-/** Returns the matrix and the vector that a function of the module writes. */
-function compute(name, state, torque, params, option, weights = []) {
-  const names = parameters();
-  const given = readSlots("params", params, names);
-  checkNumber("torque", torque);
-  const at = writeState(state, STATE_WORD);
-  const mask = writeSlots(given, names);
-  numbers().set(weights, WEIGHTS);
-  acceptAll(wasm()[name](mask, torque, option), { ...given, ...at, torque, r: weights.at(-1) });
-  const rows = [0, 4, 8, 12, 16].map((from) => numbers().slice(from, from + 4));
-  return [rows.slice(0, 4), rows[4]];
+const part = (words, [at, count]) => words.slice(at, at + count);
+const rows = (words, width = 4) =>
+  Array.from({ length: words.length / width }, (_, i) => part(words, [width * i, width]));
+
+/** Calls a function of a machine in a state, with more arguments. Returns what it writes. */
+function compute(name, words, params, state, more = {}, given = more) {
+  const changes = readChanges(params);
+  const [at, stateWords] = readState(state);
+  for (const [what, value] of Object.entries(more)) {
+    if (!ArrayBuffer.isView(value)) checkNumber(what, value);
+  }
+  const all = { ...changes, ...at, ...given };
+  call(all, name, machine(changes), stateWords, ...Object.values(more), words);
+  return words;
 }
+
+export function deviationFrom(state, target) {
+  const [[given, from], [, to]] = [readState(state), readState(target, "target")];
+  const words = empty(STATE);
+  call(given, "acrobot_deviation_from", from, to, words);
+  return unpack(words, STATE);
+}
+
+export function derivative(state, torque, params) {
+  return unpack(compute("acrobot_derivative", empty(RATES), params, state, { torque }), RATES);
+}
+
+export function massMatrix(state, params) {
+  return rows(compute("acrobot_mass_matrix", new Float32Array(4), params, state), 2);
+}
+
+export function inverseDynamics(state, ddtheta1, ddtheta2, params) {
+  const accelerations = { ddtheta1, ddtheta2 };
+  const words = empty(FORCES);
+  return unpack(compute("acrobot_inverse_dynamics", words, params, state, accelerations), FORCES);
+}
+
+const modelOf = (words) => ({ a: rows(part(words, MODEL.a)), b: part(words, MODEL.b) });
 
 export function linearize(state, torque, params) {
-  const [a, b] = compute("linear_model", state, torque, params, false);
-  return { a, b };
+  return modelOf(compute("acrobot_linearize", empty(MODEL), params, state, { torque }));
 }
 
 export function linearizeStep(state, torque, params) {
-  const [a, b] = compute("linear_model", state, torque, params, true);
-  return { a, b };
+  return modelOf(compute("acrobot_linearize_step", empty(MODEL), params, state, { torque }));
 }
 
-/** The elements of a matrix by rows. */
-const matrix = (name, rows) =>
-  elements(name, rows, 4, () => true).flatMap((row, i) =>
-    elements(`${name}[${i}]`, row, 4, isNumber, "must be a number"),
-  );
+function readModel(what, model) {
+  const { a, b } = checked(what, model, Object.keys(MODEL));
+  return pack(empty(MODEL), { a: matrix("a", a), b: elements("b", b, 4) }, MODEL);
+}
 
-export function regulator(params, q, r, state = UPRIGHT, torque = 0) {
-  const weights = matrix("q", q);
+/** A copy of weights, and their words. */
+function readWeights(q, r) {
+  const given = { q: matrix("q", q), r };
   checkNumber("r", r);
-  const weighted = [...weights, r];
-  const [costToGo, gain] = compute("regulator", state, torque, params, undefined, weighted);
-  return { gain, costToGo };
+  return [given, pack(empty(WEIGHTS), given, WEIGHTS)];
 }
 
-/** The arrays of a plan, with their elements for a step: a row in the module. */
-const PLAN = { states: 4, torques: 1, gains: 4 };
-/** The numbers of what holds the target after a plan. */
-const AFTER = 46;
+const regulatorOf = (words) => ({
+  gain: part(words, LQR.gain),
+  costToGo: rows(part(words, LQR.costToGo)),
+});
 
-function lengthOf(plan) {
-  const length = plan?.torques?.length;
+export function regulator(params, q, r, target = UPRIGHT, torque = 0) {
+  const [given, weights] = readWeights(q, r);
+  const more = { torque, weights };
+  const all = { torque, ...given };
+  return regulatorOf(compute("acrobot_regulator", empty(LQR), params, target, more, all));
+}
+
+function solve(name, model, q, r) {
+  const [modelWords, [given, weights], words] = [
+    readModel("model", model), readWeights(q, r), empty(LQR),
+  ];
+  call(given, name, modelWords, weights, words);
+  return regulatorOf(words);
+}
+
+export function lqr(model, q, r) {
+  return solve("acrobot_lqr", model, q, r);
+}
+
+export function dlqr(model, q, r) {
+  return solve("acrobot_dlqr", model, q, r);
+}
+
+export function tvlqr(models, q, r, costToGo) {
+  const count = lengthOf(models) ?? 0;
+  const each = elements("models", models, count, () => true);
+  const words = each.flatMap((model, i) => [...readModel(`models[${i}]`, model)]);
+  const [given, weights] = readWeights(q, r);
+  const [cost, gains] = [Float32Array.from(matrix("costToGo", costToGo)), new Float32Array(4 * count)];
+  call(given, "acrobot_tvlqr", Float32Array.from(words), weights, cost, gains, count);
+  return { gains: rows(gains), costToGo: rows(cost) };
+}
+
+/** The arrays of a plan, and their places in a knot. */
+const PLAN = {
+  states: KNOT.state, torques: KNOT.torque, gains: KNOT.gain, workspace: KNOT.workspace,
+};
+const WIDTH = empty(KNOT).length;
+
+/** A plan's number of steps. */
+function stepsOf(plan) {
+  const length = lengthOf(plan?.torques);
   if (length === undefined) throw invalid("plan must be one that a planner returns", plan, []);
   return length;
 }
 
 function knotOf(plan, step) {
-  const row = Object.entries(PLAN).flatMap(([name, size]) =>
+  const row = Object.entries(PLAN).flatMap(([name, [, size]]) =>
     Array.from({ length: size }, (_, i) => plan[name]?.[size * step + i]),
   );
-  return elements(`plan[${step}]`, row, 9, isFinite32, "must be a finite number");
+  return elements(`plan[${step}]`, row, WIDTH, isFinite32, "must be a finite number");
 }
 
-const NONE = new Float32Array(16);
-
-export class Planner extends Kept {
-  constructor(params, limit, { q, qf, ...cost } = {}, elbow = 0) {
-    const names = parameters();
-    const [given, weights] = [readSlots("params", params, names), readSlots("cost", cost, COST)];
-    const what = "the largest torque";
-    checkNumber(what, limit);
-    checkNumber("elbow", elbow);
-    const matrices = Object.entries({ q, qf }).map(([name, rows]) =>
-      rows === undefined ? NONE : matrix(name, rows),
-    );
-    const masks = [writeSlots(given, names), writeSlots(weights, COST, WEIGHTS)];
-    numbers().set(matrices.flatMap((each) => [...each]), MATRICES);
-    acceptAll(wasm().make(...masks, limit, elbow), { ...given, ...weights, elbow, [what]: limit });
-    super("planner", allocated("planners", 1, integers()[0]));
-  }
-
-  #resize(steps) {
-    allocated("steps", steps, call(this, "resize", steps));
-  }
-
-  /** Copies the module's plan into the arrays of one. */
-  #read(plan) {
-    for (let step = 0; step < plan.torques.length; step++) {
-      call(this, "read_knot", step);
-      let from = 0;
-      for (const [name, size] of Object.entries(PLAN)) {
-        for (let i = 0; i < size; i++) plan[name][size * step + i] = numbers()[from++];
-      }
+/** Copies knots into the arrays of a plan. */
+function writePlan(plan, knots) {
+  for (const [name, [at, size]] of Object.entries(PLAN)) {
+    for (let i = 0; i < plan[name].length; i++) {
+      const step = Math.floor(i / size);
+      plan[name][i] = knots[WIDTH * step + at + (i % size)];
     }
+  }
+  return plan;
+}
+
+/** What an `_init` function makes. */
+class Made extends Kept {
+  constructor(size, given, name, ...args) {
+    super();
+    hold(this, size, () => call(given, name, this, ...args));
+  }
+}
+
+export class Planner extends Made {
+  static kind = "planner";
+
+  constructor(params, limit, cost = {}, elbow = 0) {
+    const [changes, weights] = [readChanges(params), fields("cost", cost, COST)];
+    checkNumber("limit", limit);
+    checkNumber("elbow", elbow);
+    const given = { ...changes, ...weights, limit, elbow };
+    const problem = empty(PROBLEM);
+    call(given, "acrobot_problem_init", problem, machine(changes), limit, elbow);
+    pack(problem.subarray(PROBLEM.cost[0]), weights, COST);
+    super(SIZES.planner, given, "acrobot_planner_init", problem);
   }
 
   plan(start, options) {
     const given = checked("options", options, ["tries", "seed", "steps"]);
     const { tries = 64, seed = randomSeed(), steps } = given;
     positive("tries", tries);
-    positive("steps", steps);
-    const state = writeState(start, STATE_WORD);
-    this.#resize(steps);
-    const kind = call(this, "plan", writeSeed(seed), tries);
-    if (kind === NOT_FOUND) return null;
-    acceptAll(kind, state);
-    const [length] = integers();
-    const plan = {};
-    for (const [name, size] of Object.entries(PLAN)) plan[name] = new Float32Array(size * length);
-    this.#read(plan);
-    call(this, "feedback");
-    plan.after = numbers().slice(0, AFTER);
-    return plan;
+    positive("steps", steps, 16);
+    seedWords(seed, 64);
+    const [at, state] = readState(start);
+    const [knots, length] = [new Float32Array(WIDTH * steps), new Uint32Array(1)];
+    const planned = [this, state, tries, BigInt(seed), knots, steps, length];
+    if (!call(at, "acrobot_planner_plan", ...planned)) return null;
+    const after = empty(FEEDBACK);
+    call({}, "acrobot_planner_feedback", this, after);
+    const arrays = Object.entries(PLAN).map(([name, [, size]]) => [
+      name, new Float32Array(size * length[0]),
+    ]);
+    return writePlan({ ...Object.fromEntries(arrays), after }, knots);
   }
 
   improve(start, iterations, plan) {
     positive("iterations", iterations);
-    const knots = Array.from({ length: lengthOf(plan) }, (_, step) => knotOf(plan, step));
-    const state = writeState(start, STATE_WORD);
-    this.#resize(knots.length);
-    knots.forEach((knot, step) => {
-      numbers().set(knot);
-      call(this, "set_knot", step);
-    });
-    acceptAll(call(this, "improve", iterations), state);
-    const [cost] = numbers();
-    this.#read(plan);
-    return cost;
+    const steps = stepsOf(plan);
+    const knots = Float32Array.from(Array.from({ length: steps }, (_, i) => knotOf(plan, i)).flat());
+    const [at, state] = readState(start);
+    const [improved, cost] = [knots.slice(), new Float32Array(1)];
+    call(at, "acrobot_planner_improve", this, state, iterations, knots, improved, steps, cost);
+    writePlan(plan, improved);
+    return cost[0];
+  }
+
+  withVelocityClamp() {
+    call({}, "acrobot_planner_with_velocity_clamp", this);
+    return this;
+  }
+
+  holdsFrom(state) {
+    const [[at, words], holds] = [readState(state), new Uint8Array(1)];
+    call(at, "acrobot_planner_holds_from", this, words, holds);
+    return holds[0] !== 0;
   }
 }
 
-export class SwingUp extends Kept {
+export class SwingUp extends Made {
+  static kind = "swing-up";
+
   constructor(params, limit) {
-    const names = parameters();
-    const given = readSlots("params", params, names);
-    const what = "the largest torque";
-    checkNumber(what, limit);
-    acceptAll(wasm().make_swing_up(writeSlots(given, names), limit), { ...given, [what]: limit });
-    super("swing-up", allocated("swing-ups", 1, integers()[0]));
+    const changes = readChanges(params);
+    checkNumber("limit", limit);
+    const given = { ...changes, limit };
+    super(SIZES.swingUp, given, "acrobot_swing_up_init", machine(changes), limit);
   }
 
   torque(state) {
-    const at = writeState(state, STATE_WORD);
-    acceptAll(call(this, "swing_up_torque"), at);
-    return numbers()[0];
+    const [[at, words], torque] = [readState(state), new Float32Array(1)];
+    call(at, "acrobot_swing_up_torque", this, words, torque);
+    return torque[0];
   }
 }
 
@@ -192,12 +240,169 @@ export function planTorque(plan, step, state) {
   if (!Number.isInteger(step) || step < 0) {
     throw invalid("step must be an integer of at least 0", step);
   }
-  const isPlanned = step < lengthOf(plan);
-  const knot = isPlanned ? knotOf(plan, step) : [];
-  const rule = "must be a finite number";
-  const after = isPlanned ? [] : elements("plan.after", plan.after, AFTER, isFinite32, rule);
-  writeState(state, STATE_WORD);
-  numbers().set(knot);
-  numbers().set(after, 9);
-  return wasm().plan_torque(isPlanned);
+  const isPlanned = step < stepsOf(plan);
+  const knot = isPlanned ? Float32Array.from(knotOf(plan, step)) : empty(KNOT);
+  const after = empty(FEEDBACK);
+  if (!isPlanned) {
+    const rule = "must be a finite number";
+    after.set(elements("plan.after", plan.after, after.length, isFinite32, rule));
+  }
+  const [[at, words], torque] = [readState(state), new Float32Array(1)];
+  call(at, "acrobot_plan_torque", knot, Number(isPlanned), after, 0, words, torque);
+  return torque[0];
+}
+
+/** The state that a function writes. */
+function stateOf(name, kept) {
+  const words = empty(STATE);
+  call({}, name, kept, words);
+  return unpack(words, STATE);
+}
+
+/** What both estimators do. */
+class Filter extends Made {
+  static kind = "estimator";
+  #prefix;
+
+  constructor(size, prefix, params, std, noise) {
+    const [changes, own] = [readChanges(params), allFields("noise", noise, NOISE)];
+    const given = { ...changes, ...std, ...own };
+    const words = [machine(changes), pack(empty(NOISE), own, NOISE)];
+    if (std) words.splice(1, 0, pack(empty(STD), std, STD));
+    super(size, given, `${prefix}_init`, ...words);
+    this.#prefix = prefix;
+  }
+
+  correct(theta1, theta2) {
+    const given = { theta1, theta2 };
+    for (const [name, angle] of Object.entries(given)) checkNumber(name, angle);
+    call(given, `${this.#prefix}_correct`, this, theta1, theta2);
+  }
+
+  predict(torque) {
+    checkNumber("torque", torque);
+    call({ torque }, `${this.#prefix}_predict`, this, torque);
+  }
+
+  get state() {
+    return stateOf(`${this.#prefix}_state`, this);
+  }
+
+  get stateStd() {
+    return stateOf(`${this.#prefix}_state_std`, this);
+  }
+}
+
+export class Estimator extends Filter {
+  constructor(params, noise) {
+    super(SIZES.estimator, "acrobot_estimator", params, undefined, noise);
+  }
+}
+
+export class ParameterEstimator extends Filter {
+  constructor(params, std, noise) {
+    const given = fields("std", std, STD);
+    super(SIZES.parameterEstimator, "acrobot_parameter_estimator", params, given, noise);
+  }
+
+  get params() {
+    return unpack(paramsOf("acrobot_parameter_estimator_params", this), PARAMS);
+  }
+}
+
+/** A copy of a recording, and its samples. */
+function readRecording(recording) {
+  const { angles, torques } = checked("recording", recording, ["angles", "torques"]);
+  const count = lengthOf(torques) ?? 0;
+  const given = {
+    angles: elements("recording.angles", angles, 2 * count),
+    torques: elements("recording.torques", torques, count),
+  };
+  const samples = given.torques.flatMap((torque, i) => [
+    given.angles[2 * i], given.angles[2 * i + 1], 0, torque,
+  ]);
+  return [given, Float64Array.from(samples), count];
+}
+
+export function identify(recording, params) {
+  const changes = readChanges(params);
+  const [given, samples, count] = readRecording(recording);
+  const all = { ...changes, ...given };
+  const words = empty(PARAMS);
+  call(all, "acrobot_identify", samples, count, machine(changes), words);
+  return unpack(words, PARAMS);
+}
+
+export function predictionError(params, recording, horizon) {
+  const changes = readChanges(params);
+  const [given, samples, count] = readRecording(recording);
+  positive("horizon", horizon);
+  const [all, error] = [{ ...changes, ...given }, new Float64Array(1)];
+  call(all, "acrobot_prediction_error", machine(changes), samples, count, horizon, error);
+  return error[0];
+}
+
+const isInt32 = (number) => number === (number | 0);
+
+/** A copy of a machine with encoders, and its words. */
+function readSettings(settings) {
+  const given = checked("settings", settings, Object.keys(SETTINGS));
+  const { params, limit, counts, ticks } = given;
+  const changes = readChanges(params);
+  checkNumber("limit", limit);
+  const integers = elements("counts", counts, 2, isInt32, "must be an integer of 32 bits");
+  positive("ticks", ticks);
+  const words = pack(empty(SETTINGS), { limit }, SETTINGS);
+  words.set(machine(changes));
+  const [[at], [last]] = [SETTINGS.counts, SETTINGS.ticks];
+  new Int32Array(words.buffer).set(integers, at);
+  new Uint32Array(words.buffer)[last] = ticks;
+  return [{ ...changes, limit, counts: integers, ticks }, words];
+}
+
+export class Controller extends Made {
+  static kind = "controller";
+
+  constructor(settings) {
+    const [given, words] = readSettings(settings);
+    super(SIZES.controller, given, "acrobot_controller_init", words);
+  }
+
+  tick(count1, count2) {
+    const given = { count1, count2 };
+    for (const [name, count] of Object.entries(given)) {
+      if (!isInt32(count)) throw invalid(`${name} must be an integer of 32 bits`, count);
+    }
+    const torque = new Float32Array(1);
+    call(given, "acrobot_controller_tick", this, count1, count2, torque);
+    return torque[0];
+  }
+
+  get state() {
+    return stateOf("acrobot_controller_state", this);
+  }
+
+  get params() {
+    return unpack(paramsOf("acrobot_controller_params", this), PARAMS);
+  }
+}
+
+export class Replanner extends Made {
+  static kind = "replanner";
+
+  constructor(settings) {
+    const [given, words] = readSettings(settings);
+    super(SIZES.replanner, given, "acrobot_replanner_init", words);
+  }
+
+  exchange(controller) {
+    if (!(controller instanceof Controller)) {
+      throw invalid("controller must be a Controller", controller, []);
+    }
+    call({}, "acrobot_replanner_exchange", this, controller);
+  }
+
+  work() {
+    call({}, "acrobot_replanner_work", this);
+  }
 }

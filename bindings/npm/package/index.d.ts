@@ -35,7 +35,7 @@ export interface State {
  * The parameters, rounded to single precision. The lengths, masses, torque noise and `dynamics` of
  * a swing-up have the defaults below, the others those of dm_control. The task "balance" has
  * other defaults for `dt`, 0.02, and `torques`, [-10, 0, 10]. Friction and `rotor` are 0 by
- * default, and must be 0 in the task "gymnasium".
+ * default.
  */
 export interface Params {
   /** Length of link 1, m; above 0. Default 1. */
@@ -218,7 +218,10 @@ export class Acrobot extends Kept {
   /** The number of steps since the last reset. */
   get elapsedSteps(): number;
   get maxSteps(): number;
-  /** About 160 bytes, without draws: Rust's `TimeLimit<Acrobot<Fast>>` in postcard with CRC-32. */
+  /**
+   * About 160 bytes, without draws: Rust's `TimeLimit<Acrobot<Damped<Fast>, AnyTask>>` in postcard
+   * with CRC-32.
+   */
   snapshot(): Uint8Array;
   /** Draws the acrobot, with an arrow for the torque of the last step. */
   draw(context: Context, options?: DrawOptions): void;
@@ -293,7 +296,7 @@ export class Batch extends Kept {
   setParamsOf(index: number, changes: Readonly<Partial<Params>>): void;
   /**
    * About 150 bytes for each acrobot, and 60 to 400 for the settings and draws: Rust's
-   * `VecBatch<Fast>` in postcard with CRC-32.
+   * `VecBatch<Damped<Fast>, AnyTask>` in postcard with CRC-32.
    */
   snapshot(): Uint8Array;
   /** As `Acrobot.draw`. */

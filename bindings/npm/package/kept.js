@@ -1,12 +1,144 @@
-// What the modules share: what they keep in their memory, and checks of arguments.
+// The functions of acrobot.h, what they keep in the module's memory, and their structs.
 
+import { KINDS, STATUS, STRUCTS } from "./layout.js";
 import {
-  Opaque, camelCase, checked, integers, invalid, invalidSingle, isNumber, numbers, seedWords, text,
-  wasm,
+  Opaque, camelCase, checked, decoded, instantiate, invalid, invalidSingle, isNumber, seedWords,
 } from "./wasm.js";
 
-export const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
-export const DYNAMICS = ["book", "nips"];
+const { acrobot_error_t: ERROR, acrobot_params_t: PARAMS, acrobot_state_t: STATE } = STRUCTS;
+const DYNAMICS = ["book", "nips"];
+
+// Bundlers to CommonJS do not rename a variable `exports`.
+let shared;
+
+/** The functions of the one instance that all acrobots share. */
+export const wasm = () => (shared ??= instantiate());
+
+/** The address of `size` bytes of zeros for `count` of something, or an error. */
+function allocate(size, what, count) {
+  const address = size < 2 ** 32 ? wasm().acrobot_memory_new(size) >>> 0 : 0;
+  const rule = `${what} must fit into WebAssembly's memory of at most 4 GiB`;
+  if (address === 0) throw new RangeError(`${rule}, got ${count} more`);
+  return address;
+}
+
+/** In the memory for arguments: a reset's options, its seed, a result, and what `call` writes. */
+const [OPTIONS, SEED, RESULT, REST, SIZE] = [0, 64, 320, 384, 16384];
+
+const views = {};
+
+/**
+ * The memory for arguments: where a result of up to 64 bytes is written, and views of it and of
+ * what is before. They have length 0 once the module's memory has grown.
+ */
+export function scratch() {
+  if (!views.numbers?.length) {
+    views.address ??= allocate(SIZE, "arguments", 1);
+    const { buffer } = wasm().memory;
+    const result = views.address + RESULT;
+    views.result = result;
+    views.words = new Uint32Array(buffer, views.address, REST / 4);
+    views.numbers = new Float32Array(buffer, result, (REST - RESULT) / 4);
+    views.integers = new Uint32Array(buffer, result, (REST - RESULT) / 4);
+    views.flags = new Uint8Array(buffer, result, REST - RESULT);
+  }
+  return views;
+}
+
+/** As `call`, for a function that writes a result and rejects nothing. Returns the views. */
+export function read(name, ...args) {
+  const views = scratch();
+  accept(wasm()[name](...args, views.result));
+  return views;
+}
+
+export function accept(status) {
+  if (status !== 0) throw rejection(status);
+}
+
+/** The address of a reset's options: 0 without a seed. */
+export function resetOptions(seed) {
+  if (seed === undefined) return 0;
+  const [own, { address, words }] = [seedWords(seed), scratch()];
+  words.set(own, SEED / 4);
+  words.set([address + SEED, own.length, 0], OPTIONS / 4);
+  return address + OPTIONS;
+}
+
+/** The next size with which addresses stay aligned. */
+export const padded = (size) => Math.ceil(size / 16) * 16;
+
+const bytesOf = ({ buffer, byteOffset, byteLength }) =>
+  new Uint8Array(buffer, byteOffset, byteLength);
+export const bytesAt = (address, length) => new Uint8Array(wasm().memory.buffer, address, length);
+
+const text = (at) => {
+  const bytes = bytesAt(at, 128);
+  return decoded(bytes.subarray(0, bytes.indexOf(0)));
+};
+
+const DAMAGES = {
+  [STATUS.damagedSnapshot]: "another checksum",
+  [STATUS.otherSnapshot]: "another class or version, or invalid contents",
+};
+const ERROR_SIZE = 144;
+/** JavaScript's names of arguments that have others in Rust. */
+const NAMES = { "the largest torque": "limit" };
+
+/** The error for a status, or nothing if a planner finds no plan. */
+function rejection(status, at, given) {
+  if (status === STATUS.sharedParams) {
+    return invalid("ownParams must be true for parameters of each acrobot", false, ["boolean"]);
+  }
+  if (status in DAMAGES) {
+    const rule = "the snapshot must be an undamaged one of the same class and version";
+    return new RangeError(`${rule}, got ${given.length} bytes with ${DAMAGES[status]}`);
+  }
+  if (status !== STATUS.outOfRange) return new Error(text(wasm().acrobot_status_text(status)));
+  const { buffer } = wasm().memory;
+  const [[value], [kind]] = [new Float64Array(buffer, at, 1), new Int32Array(buffer, at + 8, 1)];
+  const [name, rule] = [ERROR.name, ERROR.rule].map(([word]) => text(at + 4 * word));
+  if (kind === KINDS.noPlan) return undefined;
+  if (kind === KINDS.notStabilizable || kind === KINDS.notDetectable) {
+    return new RangeError(text(wasm().acrobot_error_text(kind)));
+  }
+  const own = NAMES[name] ?? camelCase(name);
+  // The number before it was rounded.
+  const isGiven = (number) => Object.is(Math.fround(number), Math.fround(value));
+  const exact = [given[own.replace(/\[.*/, "")]].flat().find(isGiven);
+  return invalidSingle(`${own} must be ${rule}`, exact ?? value);
+}
+
+/**
+ * Calls a function with numbers, objects that are kept, and typed arrays, which it reads and
+ * writes. Throws what it rejects: `given` has the caller's values by their names. Returns false if
+ * a planner finds no plan. Code of the caller must run before, because it can free and allocate.
+ */
+export function call(given, name, ...args) {
+  const run = wasm()[name];
+  const values = args.map((arg) => (arg instanceof Kept ? addressOf(arg) : arg));
+  const arrays = values.filter(ArrayBuffer.isView);
+  const sizes = arrays.map(({ byteLength }) => padded(byteLength));
+  const size = sizes.reduce((sum, each) => sum + each, REST + ERROR_SIZE);
+  const own = size > SIZE ? allocate(size, "arguments", 1) : 0;
+  const error = (own || scratch().address) + REST;
+  let next = error + ERROR_SIZE;
+  const places = new Map();
+  arrays.forEach((array, i) => {
+    places.set(array, next);
+    bytesAt(next, array.byteLength).set(bytesOf(array));
+    next += sizes[i];
+  });
+  const addresses = values.map((value) => places.get(value) ?? value);
+  // The error is the last argument of the functions that have one.
+  const status = run(...addresses, ...(run.length > args.length ? [error] : []));
+  for (const [array, at] of places) bytesOf(array).set(bytesAt(at, array.byteLength));
+  const reason = status === 0 ? null : rejection(status, error, given);
+  if (own) wasm().acrobot_memory_free(own, size);
+  if (reason) throw reason;
+  return reason === null;
+}
+
 
 export function checkNumber(name, value) {
   if (!isNumber(value)) throw invalid(`${name} must be a number`, value);
@@ -19,9 +151,18 @@ export function indexOf(what, names, name) {
   return index;
 }
 
+/** The length of an array, if it has one. That of a proxy can throw. */
+export function lengthOf(array) {
+  try {
+    return array?.length;
+  } catch {
+    return undefined;
+  }
+}
+
 /** A copy of an array whose elements are valid. They are not converted: 258 and "2" are not 2. */
-export function elements(what, array, count, isValid, rule) {
-  const length = array?.length;
+export function elements(what, array, count, isValid = isNumber, rule = "must be a number") {
+  const length = lengthOf(array);
   if (length === undefined) {
     throw invalid(`${what} must be an array of ${count} elements`, array, []);
   }
@@ -32,123 +173,102 @@ export function elements(what, array, count, isValid, rule) {
   return copy;
 }
 
-/** Writes the four numbers of a state from a word on. Returns them by their names. */
-export function writeState(state, at = 0) {
-  const given = checked("state", state, STATE);
-  for (const name of STATE) checkNumber(name, given[name]);
-  numbers().set(STATE.map((name) => given[name]), at);
+/** The elements of a matrix by rows. */
+export const matrix = (name, rows) =>
+  elements(name, rows, 4, () => true).flatMap((row, i) => elements(`${name}[${i}]`, row, 4));
+
+/** A copy of an object with some fields of a struct: a number, or an array of numbers, for each. */
+export function fields(what, object, struct) {
+  const given = checked(what, object, Object.keys(struct));
+  for (const [name, value] of Object.entries(given)) {
+    const [, count] = struct[name];
+    if (name === "dynamics") given[name] = indexOf(name, DYNAMICS, value);
+    else if (count === 1) checkNumber(name, value);
+    else given[name] = count === 16 ? matrix(name, value) : elements(name, value, count);
+  }
   return given;
 }
 
-/** Writes a seed into the module's words, if there is one. Returns the number of its words. */
-export function writeSeed(seed) {
-  if (seed === undefined) return 0;
-  const words = seedWords(seed);
-  integers().set(words);
-  return words.length;
+/** As `fields`, with all of them. */
+export function allFields(what, object, struct) {
+  const given = fields(what, object, struct);
+  for (const name of Object.keys(struct)) checkNumber(name, given[name]);
+  return given;
 }
 
-let slots;
+/** Writes fields at their places. Returns the words. */
+export function pack(words, given, struct) {
+  for (const [name, value] of Object.entries(given)) words.set([value].flat(), struct[name][0]);
+  if (given.dynamics !== undefined) integersOf(words)[PARAMS.dynamics[0]] = given.dynamics;
+  return words;
+}
 
-/** The names of the parameters in the order of the module: its numbers, and the dynamics. */
-export function parameters() {
-  if (!slots) {
-    wasm().param_names();
-    const numbers = Array.from({ length: 21 }, (_, i) => camelCase(text(2 * i)));
-    slots = [...numbers, "dynamics"];
+const integersOf = ({ buffer, byteOffset }) => new Int32Array(buffer, byteOffset);
+
+/** A frozen object with the fields of a struct. */
+export function unpack(words, struct) {
+  const object = {};
+  for (const [name, [at, count]] of Object.entries(struct)) {
+    object[name] = count === 1 ? words[at] : Object.freeze([...words.subarray(at, at + count)]);
   }
-  return slots;
+  if (struct === PARAMS) object.dynamics = DYNAMICS[integersOf(words)[PARAMS.dynamics[0]]];
+  return Object.freeze(object);
 }
 
-/** The properties of an object by their names in `slots`: of `torques`, each element. */
-export function readSlots(what, object, slots) {
-  const names = [...new Set(slots.map((name) => name.replace(/\[.*/, "")))];
-  const entries = Object.entries(checked(what, object, names)).flatMap(([name, value]) => {
-    const count = slots.filter((slot) => slot.startsWith(`${name}[`)).length;
-    if (count === 0) return [[name, value]];
-    return elements(name, value, count, () => true).map((each, i) => [`${name}[${i}]`, each]);
-  });
-  return Object.fromEntries(entries);
-}
+/** The words of a struct of zeros. */
+export const empty = (struct) => new Float32Array(Object.values(struct).flat().slice(-2).reduce((a, b) => a + b));
 
-/**
- * Writes values by their names in `slots`, with `dynamics` as its index, from a word on. Returns
- * their mask.
- */
-export function writeSlots(given, slots, from = 0) {
-  for (const [name, value] of Object.entries(given)) {
-    if (name === "dynamics") given[name] = indexOf(name, DYNAMICS, value);
-    else checkNumber(name, value);
-  }
-  let mask = 0;
-  for (const [name, value] of Object.entries(given)) {
-    const slot = slots.indexOf(name);
-    numbers()[from + slot] = value;
-    mask |= 1 << slot;
-  }
-  return mask;
-}
+export const readChanges = (changes) => fields("params", changes, PARAMS);
 
-/**
- * Throws if the module has rejected numbers. `given` has those of the caller by their names, as
- * numbers or in arrays.
- */
-export function accept(kind, given) {
-  if (kind === 0) return;
-  const shared = "ownParams must be true for parameters of each acrobot";
-  if (kind === 3) throw invalid(shared, false, ["boolean"]);
-  const [value] = numbers();
-  const name = camelCase(text(1));
-  const friction = `0 in the task "gymnasium", in ${text(5)}`;
-  const rule = text(3).startsWith("0 unless") ? friction : `${text(3)} ${text(5)}`;
-  // What the caller gave, before it was rounded.
-  const all = [given[name], given[`${name}[0]`], given[`${name}[1]`]].flat();
-  const own = all.find((number) => Object.is(Math.fround(number), value));
-  throw invalidSingle(`${name} must be ${rule}`, own ?? value);
+/** The words of parameters that a function writes. */
+export function paramsOf(name, ...args) {
+  const words = empty(PARAMS);
+  call({}, name, ...args, words);
+  return words;
 }
 
 /** Frees what the program has forgotten to free, if the engine says when. */
-const free = (address) => wasm().kept_free(address);
+const free = ({ address, size }) => wasm().acrobot_memory_free(address, size);
 const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(free);
 
-/**
- * `addressOf` returns an address in the module, and `call` calls a function of the module with it.
- * Reading arguments can run code that frees the acrobot, so they come after all arguments.
- */
-export let addressOf, call;
-
-/** The address of what the module has memory for, or an error. */
-export function allocated(what, count, address) {
-  const rule = `${what} must fit into WebAssembly's memory of at most 4 GiB`;
-  if (!address) throw new RangeError(`${rule}, got ${count} more`);
-  return address;
+/** Frees an object that is being made if that throws. */
+export function orFree(kept, make) {
+  try {
+    make();
+  } catch (error) {
+    kept.free();
+    throw error;
+  }
 }
 
-/** What the module keeps at an address: an acrobot, a batch or a planner. */
+/**
+ * `addressOf` returns the address of an object's memory. `hold` gives it other memory, with room
+ * for `count` of `what`, and calls `init`.
+ */
+export let addressOf, hold;
+
+/** What has memory in the module: an acrobot, a batch, a planner and others. */
 export class Kept extends Opaque {
-  #kind;
-  #address;
+  #memory;
 
   static {
     addressOf = (kept) => {
-      if (kept.#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
-      return kept.#address;
+      if (!kept.#memory) throw new Error(`the ${kept.constructor.kind} has been freed`);
+      return kept.#memory.address;
     };
-    call = (kept, name, ...given) => wasm()[name](addressOf(kept), ...given);
-  }
-
-  constructor(kind, address) {
-    super();
-    this.#kind = kind;
-    this.#address = address;
-    registry?.register(this, address, this);
+    hold = (kept, size, init, what = `${kept.constructor.kind}s`, count = 1) => {
+      kept.free();
+      kept.#memory = { address: allocate(size, what, count), size };
+      registry?.register(kept, kept.#memory, kept);
+      orFree(kept, init);
+    };
   }
 
   free() {
-    if (this.#address === 0) return;
+    if (!this.#memory) return;
     registry?.unregister(this);
-    free(this.#address);
-    this.#address = 0;
+    free(this.#memory);
+    this.#memory = undefined;
   }
 
   // Older engines have neither `using` nor this symbol.

@@ -1,4 +1,4 @@
-// The module and its memory, and the checks of arguments: what the classes share.
+// The module and the checks of arguments: what the entries share.
 
 import inflate from "tiny-inflate";
 
@@ -33,36 +33,6 @@ export function instantiate() {
   }
 }
 
-// Bundlers to CommonJS do not rename a variable `exports`.
-let shared;
-
-/** The functions of the one instance that all acrobots share. */
-export function wasm() {
-  return (shared ??= instantiate());
-}
-
-let views = [];
-
-/**
- * The module's words, as unsigned integers and as single-precision numbers. Every view of memory
- * has length 0 once the memory has grown.
- */
-function words() {
-  if (!views[0]?.length) {
-    const { memory, words } = wasm();
-    views = [Uint32Array, Float32Array].map((Type) => new Type(memory.buffer, words(), 105));
-  }
-  return views;
-}
-
-export const integers = () => words()[0];
-export const numbers = () => words()[1];
-
-export const bytes = (address, length) => new Uint8Array(wasm().memory.buffer, address, length);
-
-/** The text whose address and length are in the words from `at` on. */
-export const text = (at) => decoded(bytes(...integers().subarray(at, at + 2)));
-
 /** A text of the module. jsdom has no TextDecoder. */
 export function decoded(utf8) {
   const codes = Array.from(utf8, (byte) => `%${byte.toString(16).padStart(2, "0")}`);
@@ -92,6 +62,7 @@ export function copied(what, given) {
 
 function shown(value) {
   if (typeof value === "string") return JSON.stringify(value);
+  if (typeof value === "bigint") return `${value}n`;
   return Object(value) === value ? tagOf(value) : String(value);
 }
 
@@ -129,22 +100,21 @@ export const isNumber = (value) => typeof value === "number";
 
 export const isFinite32 = (number) => isNumber(number) && Number.isFinite(Math.fround(number));
 
-/** An integer from 1 to 2³² − 1. */
-export function positive(name, value) {
-  if (!Number.isInteger(value) || value < 1 || value >= 2 ** 32) {
-    throw invalid(`${name} must be an integer from 1 to 2^32 - 1`, value);
+/** Rejects what is no integer from 1 to 2^bits − 1. */
+export function positive(name, value, bits = 32) {
+  if (!Number.isInteger(value) || value < 1 || value >= 2 ** bits) {
+    throw invalid(`${name} must be an integer from 1 to 2^${bits} - 1`, value);
   }
-  return value;
 }
 
 export const randomSeed = () => Math.floor(Math.random() * 2 ** 53);
 
 /** The 32-bit words of a seed, the lowest first. */
-export function seedWords(seed) {
-  const isSeed = Number.isSafeInteger(seed) || (typeof seed === "bigint" && seed < 1n << 2048n);
-  if (!isSeed || seed < 0) {
-    const rule = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
-    throw invalid(rule, seed, ["number", "bigint"]);
+export function seedWords(seed, bits = 2048) {
+  const isBig = typeof seed === "bigint" && BigInt.asUintN(bits, seed) === seed;
+  if (!isBig && !(Number.isSafeInteger(seed) && seed >= 0)) {
+    const rule = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to";
+    throw invalid(`${rule} 2^${bits} - 1`, seed, ["number", "bigint"]);
   }
   const words = [];
   let rest = BigInt(seed);
