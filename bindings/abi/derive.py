@@ -162,10 +162,8 @@ def entries(start, items, indent, end):
     return [f"{start} {{", *wrapped(f"{listed},", indent), end]
 
 
-draws = [name.lower() for name in re.findall(r"#define ACROBOT_DRAW_(\w+)", header)]
 lines = ["// derive.py writes this file: what acrobot.h says, with the layout in wasm32.", ""]
-for name, values_of in {"TASKS": tasks, "DRAWS": draws}.items():
-    lines += [f"export const {name} = {json.dumps([*map(in_javascript, values_of)])};"]
+lines += [f"export const TASKS = {json.dumps([*tasks])};"]
 for name, kind in {"STATUS": "status", "KINDS": "error_kind"}.items():
     body = re.search(rf"enum {{([^}}]*)}} acrobot_{kind}_t;", header)[1].lower()
     numbers = re.findall(r"acrobot_(?:error_)?(\w+) = (\d+)", body)

@@ -53,10 +53,10 @@ pub struct Params<S = f64> {
     /// Duration of one step, s; above 0.
     pub dt: S,
     #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
-    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, infinity for none.
+    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as
+    /// 3.4e38, the largest number in single precision, which observations have.
     ///
-    /// Infinity is stored as 3.4e38, the largest `f32`, because observations are `f32`. JSON's
-    /// writers make `null` of it, which loads as infinity.
+    /// JSON's writers make `null` of infinity, which loads as infinity.
     pub max_velocity1: S,
     #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.

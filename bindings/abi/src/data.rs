@@ -92,8 +92,7 @@ impl From<acrobot_state_t> for State<f32> {
     }
 }
 
-/// To change one parameter, read all with acrobot_params, and set them. Frictions and `rotor` must
-/// be 0 in a batch.
+/// To change one parameter, read all with acrobot_params, and set them.
 // derive.py writes the fields of these structs.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -119,7 +118,8 @@ pub struct acrobot_params_t {
     pub gravity: f32,
     /// Duration of one step, s; above 0. Default 0.2.
     pub dt: f32,
-    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, infinity for none. Default 4 π.
+    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as
+    /// 3.4e38, the largest number in single precision, which observations have. Default 4 π.
     pub max_velocity1: f32,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
     pub max_velocity2: f32,

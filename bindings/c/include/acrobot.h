@@ -255,8 +255,7 @@ typedef struct {
   float dtheta2;
 } acrobot_state_t;
 
-// To change one parameter, read all with acrobot_params, and set them. Frictions and `rotor` must
-// be 0 in a batch.
+// To change one parameter, read all with acrobot_params, and set them.
 typedef struct {
   // Length of link 1, m; above 0. Default 1.
   float length1;
@@ -279,7 +278,8 @@ typedef struct {
   float gravity;
   // Duration of one step, s; above 0. Default 0.2.
   float dt;
-  // Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, infinity for none. Default 4 π.
+  // Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as
+  // 3.4e38, the largest number in single precision, which observations have. Default 4 π.
   float max_velocity1;
   // Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
   float max_velocity2;

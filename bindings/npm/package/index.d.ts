@@ -61,7 +61,10 @@ export interface Params {
   gravity: number;
   /** Duration of one step, s; above 0. Default 0.2. */
   dt: number;
-  /** Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, infinity for none. Default 4 π. */
+  /**
+   * Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as 3.4e38,
+   * the largest number in single precision, which observations have. Default 4 π.
+   */
   maxVelocity1: number;
   /** Bound of |θ̇2| after a step, rad/s; as `maxVelocity1`. Default 9 π. */
   maxVelocity2: number;

@@ -1,7 +1,6 @@
 // derive.py writes this file: what acrobot.h says, with the layout in wasm32.
 
 export const TASKS = ["gymnasium", "swingup", "balance"];
-export const DRAWS = ["fixed", "uniform", "logUniform", "normal"];
 export const STATUS = {
   ok: 0, null: 1, misaligned: 2, bufferTooSmall: 3, notInitialized: 4, moved: 5, unknownAction: 6,
   outOfRange: 7, wrongCount: 8, noSuchIndex: 9, overlap: 10, damagedSnapshot: 11, otherSnapshot: 12,

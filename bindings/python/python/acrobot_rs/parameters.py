@@ -90,7 +90,8 @@ class Parameters:
     gravity: Any = 9.8
     #: Duration of one step, s; above 0.
     dt: Any = 0.2
-    #: Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, infinity for none.
+    #: Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as
+    #: 3.4e38, the largest number in single precision, which observations have.
     MAX_VEL_1: Any = 4 * math.pi
     #: Bound of |θ̇2| after a step, rad/s; as ``MAX_VEL_1``.
     MAX_VEL_2: Any = 9 * math.pi
