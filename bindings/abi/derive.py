@@ -200,6 +200,7 @@ def interface(file, name, fields):
 
 interface("index.d.ts", "Params", with_defaults('"book"'))
 interface("control.d.ts", "Cost", costs)
+interface("control.d.ts", "ParameterStd", stds)
 lines = ["/**", " * A task, by its name:", " *"]
 for name, text in tasks.items():
     lines += wrapped(f'- "{name}": {text}', " * ", "  ")

@@ -2,13 +2,13 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, NONE, TASKS, isAction, readDraws, readOptions, sample, save,
+  ACTION, NONE, isAction, readDraws, readOptions, sample, save,
 } from "./environment.js";
 import {
   Kept, accept, addressOf, allFields, bytesAt, call, hold, orFree, pack, paramsOf, read, readChanges,
   resetOptions, scratch, unpack, wasm,
 } from "./kept.js";
-import { SIZES, STRUCTS } from "./layout.js";
+import { SIZES, STRUCTS, TASKS } from "./layout.js";
 import { copied, invalid, invalidSingle, isFinite32, randomSeed } from "./wasm.js";
 
 const { acrobot_params_t: PARAMS, acrobot_state_t: STATE } = STRUCTS;

@@ -2,13 +2,13 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, NONE, TASKS, isAction, readDraws, readOptions, sample, save,
+  ACTION, NONE, isAction, readDraws, readOptions, sample, save,
 } from "./environment.js";
 import {
   Kept, accept, addressOf, allFields, call, elements, hold, indexOf, pack, padded, paramsOf, read,
   readChanges, resetOptions, unpack, wasm,
 } from "./kept.js";
-import { SIZES, STRUCTS } from "./layout.js";
+import { SIZES, STRUCTS, TASKS } from "./layout.js";
 import { copied, invalid, isFinite32, positive, randomSeed } from "./wasm.js";
 
 const {

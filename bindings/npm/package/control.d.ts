@@ -247,15 +247,34 @@ export class Estimator extends Filter {
   constructor(params: Readonly<Partial<Params>>, noise: Readonly<Noise>);
 }
 
-/** The parameters that can be estimated. */
-export type Estimated =
-  | "mass1" | "mass2" | "length1" | "inertia1" | "inertia2"
-  | "damping1" | "damping2" | "coulomb1" | "coulomb2" | "rotor";
+/** The standard deviations of parameters, each in its unit. Default 0, for one that is known. */
+export interface ParameterStd {
+  /** Of the mass of link 1, kg. */
+  mass1: number;
+  /** Of the mass of link 2, kg. */
+  mass2: number;
+  /** Of the length of link 1, m. */
+  length1: number;
+  /** Of the moment of inertia of link 1, kg m². */
+  inertia1: number;
+  /** Of the moment of inertia of link 2, kg m². */
+  inertia2: number;
+  /** Of the viscous friction of joint 1, N m s/rad. */
+  damping1: number;
+  /** Of the viscous friction of joint 2, N m s/rad. */
+  damping2: number;
+  /** Of the Coulomb friction of joint 1, N m. */
+  coulomb1: number;
+  /** Of the Coulomb friction of joint 2, N m. */
+  coulomb2: number;
+  /** Of the rotor, kg m². */
+  rotor: number;
+}
 
 /** As `Estimator`, and estimates the parameters that have a standard deviation above 0. */
 export class ParameterEstimator extends Filter {
   constructor(
-    params: Readonly<Partial<Params>>, std: Readonly<Partial<Record<Estimated, number>>>,
+    params: Readonly<Partial<Params>>, std: Readonly<Partial<ParameterStd>>,
     noise: Readonly<Noise>,
   );
   /** The estimated parameters, and those that are known. */
