@@ -284,7 +284,6 @@ int main(void)
 {
     an_acrobot();
     actions();
-    drawn_parameters();
     a_batch();
     swing_ups();
     controllers();
