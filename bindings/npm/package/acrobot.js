@@ -5,7 +5,7 @@ import {
   ACTION, NONE, TASKS, isAction, readDraws, readOptions, sample, save,
 } from "./environment.js";
 import {
-  Kept, accept, addressOf, allFields, bytesAt, call, hold, orFree, pack, paramsOf, read, readChanges,
+  Kept, accept, addressOf, bytesAt, call, hold, orFree, pack, paramsOf, read, readAll, readChanges,
   resetOptions, scratch, unpack, wasm,
 } from "./kept.js";
 import { SIZES, STRUCTS } from "./layout.js";
@@ -114,8 +114,8 @@ export class Acrobot extends Kept {
   }
 
   set state(state) {
-    const given = allFields("state", state, STATE);
-    call(given, "acrobot_set_state", this, pack(new Float32Array(4), given, STATE));
+    const [given, words] = readAll("state", state, STATE);
+    call(given, "acrobot_set_state", this, words);
   }
 
   get energy() {

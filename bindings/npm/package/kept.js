@@ -5,7 +5,7 @@ import {
   Opaque, camelCase, checked, decoded, instantiate, invalid, invalidSingle, isNumber, seedWords,
 } from "./wasm.js";
 
-const { acrobot_error_t: ERROR, acrobot_params_t: PARAMS, acrobot_state_t: STATE } = STRUCTS;
+const { acrobot_error_t: ERROR, acrobot_params_t: PARAMS } = STRUCTS;
 const DYNAMICS = ["book", "nips"];
 
 // Bundlers to CommonJS do not rename a variable `exports`.
@@ -41,6 +41,7 @@ export function scratch() {
     views.numbers = new Float32Array(buffer, result, (REST - RESULT) / 4);
     views.integers = new Uint32Array(buffer, result, (REST - RESULT) / 4);
     views.flags = new Uint8Array(buffer, result, REST - RESULT);
+    views.bytes = new Uint8Array(buffer, views.address, SIZE);
   }
   return views;
 }
@@ -117,28 +118,23 @@ function rejection(status, at, given) {
 export function call(given, name, ...args) {
   const run = wasm()[name];
   const values = args.map((arg) => (arg instanceof Kept ? addressOf(arg) : arg));
-  const arrays = values.filter(ArrayBuffer.isView);
-  const sizes = arrays.map(({ byteLength }) => padded(byteLength));
-  const size = sizes.reduce((sum, each) => sum + each, REST + ERROR_SIZE);
+  const copies = values.map((value) => ArrayBuffer.isView(value) && bytesOf(value));
+  const size = copies.reduce((sum, { length = 0 }) => sum + padded(length), REST + ERROR_SIZE);
   const own = size > SIZE ? allocate(size, "arguments", 1) : 0;
-  const error = (own || scratch().address) + REST;
-  let next = error + ERROR_SIZE;
-  const places = new Map();
-  arrays.forEach((array, i) => {
-    places.set(array, next);
-    bytesAt(next, array.byteLength).set(bytesOf(array));
-    next += sizes[i];
-  });
-  const addresses = values.map((value) => places.get(value) ?? value);
+  const { address, bytes } = own ? { address: own, bytes: bytesAt(own, size) } : scratch();
+  let next = REST + ERROR_SIZE;
+  const places = copies.map(({ length = 0 }) => (next += padded(length)) - padded(length));
+  copies.forEach((copy, i) => copy && bytes.set(copy, places[i]));
+  const addresses = values.map((value, i) => (copies[i] ? address + places[i] : value));
   // The error is the last argument of the functions that have one.
+  const error = address + REST;
   const status = run(...addresses, ...(run.length > args.length ? [error] : []));
-  for (const [array, at] of places) bytesOf(array).set(bytesAt(at, array.byteLength));
+  copies.forEach((copy, i) => copy && copy.set(bytes.subarray(places[i], places[i] + copy.length)));
   const reason = status === 0 ? null : rejection(status, error, given);
   if (own) wasm().acrobot_memory_free(own, size);
   if (reason) throw reason;
   return reason === null;
 }
-
 
 export function checkNumber(name, value) {
   if (!isNumber(value)) throw invalid(`${name} must be a number`, value);
@@ -189,11 +185,12 @@ export function fields(what, object, struct) {
   return given;
 }
 
-/** As `fields`, with all of them. */
-export function allFields(what, object, struct) {
-  const given = fields(what, object, struct);
-  for (const name of Object.keys(struct)) checkNumber(name, given[name]);
-  return given;
+/** A copy of an object with all numbers of a struct, and its words. */
+export function readAll(what, object, struct) {
+  const names = Object.keys(struct);
+  const given = checked(what, object, names);
+  for (const name of names) checkNumber(name, given[name]);
+  return [given, Float32Array.from(names, (name) => given[name])];
 }
 
 /** Writes fields at their places. Returns the words. */
@@ -216,7 +213,10 @@ export function unpack(words, struct) {
 }
 
 /** The words of a struct of zeros. */
-export const empty = (struct) => new Float32Array(Object.values(struct).flat().slice(-2).reduce((a, b) => a + b));
+export function empty(struct) {
+  const [[at, count]] = Object.values(struct).slice(-1);
+  return new Float32Array(at + count);
+}
 
 export const readChanges = (changes) => fields("params", changes, PARAMS);
 
