@@ -11,7 +11,8 @@ import {
 import { SIZES, STRUCTS } from "./layout.js";
 import { copied, invalid, invalidSingle, isFinite32, randomSeed } from "./wasm.js";
 
-const { acrobot_params_t: PARAMS, acrobot_state_t: STATE } = STRUCTS;
+const { acrobot_params_t: PARAMS, acrobot_state_t: STATE, acrobot_step_t: STEP } = STRUCTS;
+const [[REWARD], [FLAGS]] = [STEP.reward, STEP.flags];
 
 /** A copy of an observation, by a loop, because `slice` takes half as long again. */
 function observationOf(numbers) {
@@ -22,8 +23,8 @@ function observationOf(numbers) {
 
 /** Reads an acrobot_step_t. */
 function resultsOf({ numbers, flags }) {
-  const [terminated, truncated] = [flags[28] !== 0, flags[29] !== 0];
-  return { observation: observationOf(numbers), reward: numbers[6], terminated, truncated };
+  const [terminated, truncated] = [flags[4 * FLAGS] !== 0, flags[4 * FLAGS + 1] !== 0];
+  return { observation: observationOf(numbers), reward: numbers[REWARD], terminated, truncated };
 }
 
 export class Acrobot extends Kept {

@@ -82,7 +82,7 @@ const DAMAGES = {
   [STATUS.damagedSnapshot]: "another checksum",
   [STATUS.otherSnapshot]: "another class or version, or invalid contents",
 };
-const ERROR_SIZE = 144;
+const ERROR_SIZE = padded(4 * (ERROR.rule[0] + ERROR.rule[1]));
 /** JavaScript's names of arguments that have others in Rust. */
 const NAMES = { "the largest torque": "limit" };
 
@@ -97,7 +97,8 @@ function rejection(status, at, given) {
   }
   if (status !== STATUS.outOfRange) return new Error(text(wasm().acrobot_status_text(status)));
   const { buffer } = wasm().memory;
-  const [[value], [kind]] = [new Float64Array(buffer, at, 1), new Int32Array(buffer, at + 8, 1)];
+  const [value] = new Float64Array(buffer, at + 4 * ERROR.value[0], 1);
+  const [kind] = new Int32Array(buffer, at + 4 * ERROR.kind[0], 1);
   const [name, rule] = [ERROR.name, ERROR.rule].map(([word]) => text(at + 4 * word));
   if (kind === KINDS.noPlan) return undefined;
   if (kind === KINDS.notStabilizable || kind === KINDS.notDetectable) {

@@ -20,7 +20,6 @@ export const KINDS = { notStabilizable: 5, notDetectable: 6, illConditioned: 7, 
 /** For each field of a struct its first word of 32 bits, and the number of its words. */
 export const STRUCTS = {
   acrobot_error_t: { value: [0, 2], kind: [2, 1], name: [3, 6], unit: [9, 4], rule: [13, 20] },
-  acrobot_reset_options_t: { seed: [0, 1], seedWords: [1, 1], bounds: [2, 1] },
   acrobot_step_t: { observation: [0, 6], reward: [6, 1], flags: [7, 1] },
   acrobot_state_t: { theta1: [0, 1], theta2: [1, 1], dtheta1: [2, 1], dtheta2: [3, 1] },
   acrobot_params_t: {
