@@ -52,6 +52,12 @@ test("parameters act as natively", () => {
   acrobot.setParams(params);
   assert.deepEqual(acrobot.params, params);
   assert.deepEqual(Acrobot.restore(acrobot.snapshot()).params, params);
+  // No bound is stored as the largest number.
+  const unbounded = { params: { maxVelocity2: Infinity } };
+  const batches = [true, false].map((ownParams) => new Batch({ ...unbounded, count: 2, ownParams }));
+  for (const { params } of [new Acrobot(unbounded), ...batches]) {
+    assert.equal(params.maxVelocity2, 3.4028234663852886e38);
+  }
 });
 
 test("reset, limit, state, energy and height are the crate's", () => {
