@@ -53,9 +53,9 @@ test("parameters act as natively", () => {
   assert.deepEqual(acrobot.params, params);
   assert.deepEqual(Acrobot.restore(acrobot.snapshot()).params, params);
   // No bound is stored as the largest number.
-  const unbounded = { params: { maxVelocity2: Infinity } };
-  const batches = [true, false].map((ownParams) => new Batch({ ...unbounded, count: 2, ownParams }));
-  for (const { params } of [new Acrobot(unbounded), ...batches]) {
+  const unbounded = { params: { maxVelocity2: Infinity }, count: 2 };
+  const batches = [true, false].map((ownParams) => new Batch({ ...unbounded, ownParams }));
+  for (const { params } of [new Acrobot({ params: unbounded.params }), ...batches]) {
     assert.equal(params.maxVelocity2, 3.4028234663852886e38);
   }
 });
