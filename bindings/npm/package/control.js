@@ -112,8 +112,8 @@ export function dlqr(model, q, r) {
 }
 
 export function tvlqr(models, q, r, costToGo) {
-  const count = lengthOf(models) ?? 0;
-  const each = elements("models", models, count, () => true);
+  const each = elements("models", models, undefined, () => true);
+  const count = each.length;
   const words = each.flatMap((model, i) => [...readModel(`models[${i}]`, model)]);
   const [given, weights] = readWeights(q, r);
   const cost = Float32Array.from(matrix("costToGo", costToGo));
@@ -310,11 +310,9 @@ export class ParameterEstimator extends Filter {
 /** A copy of a recording, and its samples. */
 function readRecording(recording) {
   const { angles, torques } = checked("recording", recording, ["angles", "torques"]);
-  const count = lengthOf(torques) ?? 0;
-  const given = {
-    angles: elements("recording.angles", angles, 2 * count),
-    torques: elements("recording.torques", torques, count),
-  };
+  const given = { torques: elements("recording.torques", torques) };
+  const count = given.torques.length;
+  given.angles = elements("recording.angles", angles, 2 * count);
   const samples = given.torques.flatMap((torque, i) => [
     given.angles[2 * i], given.angles[2 * i + 1], 0, torque,
   ]);

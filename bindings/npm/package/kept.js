@@ -158,13 +158,16 @@ export function lengthOf(array) {
 }
 
 /** A copy of an array whose elements are valid. They are not converted: 258 and "2" are not 2. */
-export function elements(what, array, count, isValid = isNumber, rule = "must be a number") {
+export function elements(
+  what, array, count = lengthOf(array), isValid = isNumber, rule = "must be a number",
+) {
   const length = lengthOf(array);
   if (length === undefined) {
-    throw invalid(`${what} must be an array of ${count} elements`, array, []);
+    const size = count === undefined ? "" : ` of ${count} elements`;
+    throw invalid(`${what} must be an array${size}`, array, []);
   }
   if (length !== count) throw invalid(`${what} must have ${count} elements`, length);
-  const copy = Array.from({ length: count }, (_, i) => array[i]);
+  const copy = Array.from({ length }, (_, i) => array[i]);
   const wrong = copy.findIndex((element) => !isValid(element));
   if (wrong >= 0) throw invalidSingle(`${what}[${wrong}] ${rule}`, copy[wrong]);
   return copy;
