@@ -99,6 +99,8 @@ test("regulators of models are those of machines", () => {
   assert.equal(gains.length, 2);
   gains[0].forEach((gain, i) => near(gain / one.gain[i], 1, 1e-3));
   near(costToGo[2][1] / one.costToGo[2][1], 1, 1e-3);
+  // Hanging, the acrobot needs less.
+  assert.ok(Math.abs(one.gain[0]) > 10 * Math.abs(regulator(PARAMS, EYE, 1, HANGING).gain[0]));
   // In 10 ms decisions change little.
   const { gain } = lqr(linearize(UPRIGHT, 0, PARAMS), EYE, 1);
   gain.forEach((each, i) => near(each / one.gain[i], 1, 0.1));
@@ -140,14 +142,16 @@ test("estimators follow angles, and recordings have parameters", () => {
   near(parameters.params.mass2, 1.1, 0.001);
   const identified = identify(recording, PARAMS);
   near(identified.mass2, 1.1, 0.002);
-  assert.ok(predictionError(identified, recording, 20) < predictionError(PARAMS, recording, 20) / 9);
+  const [fit, wrong] = [identified, PARAMS].map((each) => predictionError(each, recording, 20));
+  assert.ok(fit < wrong / 9, `${fit}, ${wrong}`);
 });
 
 test("a controller and a replanner swing a machine with encoders up", () => {
   // RealAIGym's acrobot, whose motor has 6 N m.
   const links = { length1: 0.2, length2: 0.3, mass1: 0.523, mass2: 0.626 };
   const centers = { centerOfMass1: 0.2, centerOfMass2: 0.256, inertia1: 0.011, inertia2: 0.0099 };
-  const params = { ...links, ...centers, dt: 0.002, maxVelocity1: Infinity, maxVelocity2: Infinity };
+  const bounds = { maxVelocity1: Infinity, maxVelocity2: Infinity };
+  const params = { ...links, ...centers, ...bounds, dt: 0.002 };
   const settings = { params, limit: 6, counts: [4096, 4096], ticks: 5 };
   const [controller, replanner] = [new Controller(settings), new Replanner(settings)];
   const machine = new Acrobot({ params });
@@ -172,30 +176,6 @@ test("without a plan, the torque pumps energy and then holds", () => {
   for (let i = 0; i < 6000; i++) acrobot.stepTorque(swingUp.torque(acrobot.state));
   assert.ok(acrobot.tipHeight > 1.999);
   assert.equal(new Planner(PARAMS, 7).plan(HANGING, { steps: 10, tries: 3 }), null);
-});
-
-test("a regulator has the gain with which a planner holds, in both tasks", () => {
-  for (const task of ["gymnasium", "swingup"]) {
-    const { params } = new Acrobot({ task, params: { dt: 0.02, mass2: 1.5 } });
-    // The planner's weights are 1 in the units of the machine: its torque, and a time T.
-    const [limit, { mass1, mass2 }] = [2, params];
-    const [lever, reach] = [params.centerOfMass1, params.length1 + params.centerOfMass2];
-    const inertia =
-      params.inertia1 + mass1 * lever ** 2 + params.inertia2 + mass2 * reach ** 2;
-    const square = inertia / ((mass1 * lever + mass2 * reach) * params.gravity + limit);
-    const q = EYE.map((row, i) => row.map((x) => (i < 2 ? x : x * square)));
-    const { gain, costToGo } = regulator(params, q, 1 / limit ** 2);
-    assert.equal(costToGo[1][2], costToGo[2][1]);
-    const { after } = new Planner(params, limit).plan(UPRIGHT, { steps: 20, seed: 1 });
-    const none = { states: [], torques: [], gains: [], after };
-    Object.entries(UPRIGHT).forEach(([name, value], i) => {
-      const torque = planTorque(none, 0, { ...UPRIGHT, [name]: value + 0.25 });
-      assert.ok(Math.abs(torque + 0.25 * gain[i]) < 1e-3, `${torque} and ${gain}`);
-    });
-  }
-  // Hanging, the acrobot needs less.
-  const [up, down] = [UPRIGHT, HANGING].map((each) => regulator(PARAMS, EYE, 1, each).gain);
-  assert.ok(Math.abs(up[0]) > 10 * Math.abs(down[0]));
 });
 
 test("invalid arguments are rejected with Rust's messages", () => {
