@@ -1,6 +1,6 @@
-//! The bits that every target must compute: episodes, a batch, a training, a plan and drawings, with
-//! digests of all their bits. `tests/results.rs` records the rest of control, which the tests of C
-//! compare, also on a Cortex-M4F.
+//! The bits that every target must compute: episodes, a batch, a training, a plan and drawings,
+//! with digests of all their bits. `tests/results.rs` records the rest of control, which the tests
+//! of C compare, also on a Cortex-M4F.
 //!
 //! The library's tests, the program of this crate and the firmware of `examples/cortex-m` compare
 //! these digests.
