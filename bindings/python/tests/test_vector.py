@@ -198,17 +198,3 @@ def test_a_call_of_another_thread_during_a_call_is_rejected(kind):
     assert [type(each) for each in errors] == [RuntimeError] * 5
     assert all(str(each).startswith("another thread is using this") for each in errors)
     assert env.dt == 0.2
-
-
-def test_steps_in_float64_are_gymnasiums_but_for_rounding():
-    envs, twin = make_vec(500, float64=True), make_vec(500, gymnasium_episodes=True)
-    states = np.random.default_rng(0).uniform([-3, -3, -10, -20], [3, 3, 10, 20], (500, 4))
-    for each in (envs, twin):
-        each.reset(seed=0)
-        each.state = states
-    found, expected = (each.step(np.arange(500) % 3) for each in (envs, twin))
-    assert found[1].dtype == np.float32
-    for one, other, bound in zip(found[:4], expected[:4], (1e-6, 0, 0, 0), strict=True):
-        np.testing.assert_allclose(one, other, rtol=0, atol=bound)
-    assert np.abs(envs.state - twin.state).max() < 1e-12
-    assert (envs.state == twin.state).all(axis=1).sum() > 480  # the C library rounds some sines

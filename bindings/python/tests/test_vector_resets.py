@@ -15,16 +15,6 @@ from gymnasium.vector import AutoresetMode
 from vectors import MODES, assert_equal, assert_resets_equal, different, make_vec, pair, rejects
 
 
-def test_environments_draw_from_the_seed_s_children():
-    envs = make_vec(100)
-    for seed in [0, 42, 2**100 + 3]:
-        envs.reset(seed=seed)
-        children = np.random.SeedSequence(seed).spawn(100)
-        states = [np.random.default_rng(child).uniform(-0.1, 0.1, 4) for child in children]
-        assert (envs.state == np.float32(states)).all() and envs.np_random_seed == seed
-    assert (make_vec(5).reset()[0] != make_vec(5).reset()[0]).any(), "random without a seed"
-
-
 def test_rejected_seeds_change_nothing():
     envs = make_vec(2)
     single = acrobot_rs.AcrobotEnv()
