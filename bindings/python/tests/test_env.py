@@ -147,22 +147,3 @@ def test_values_cannot_change_in_place():
     env.AVAIL_TORQUE = torques
     mass[...], torques[0] = 3.0, 0.0
     assert env.LINK_MASS_1 == 2.0 and env.AVAIL_TORQUE == (-2.0, 0.0, 2.0)
-
-
-def test_continuous_torques_are_those_of_the_discrete_environment():
-    """Between and at the bounds. Torques outside are clipped."""
-    torques = [0.5, -3.0, 2.0]
-    actions = {-np.inf: -3.0, -4.0: -3.0, -3.0: -3.0, 0.25: 0.25, 2.0: 2.0, 3.0: 2.0, np.inf: 2.0}
-    ours = AcrobotContinuousEnv(AVAIL_TORQUE=torques, torque_noise_max=0.1)
-    discrete = AcrobotEnv(AVAIL_TORQUE=list(actions.values()), torque_noise_max=0.1)
-    assert (ours.reset(seed=2)[0] == discrete.reset(seed=2)[0]).all()
-    kinds = [
-        *(list, np.float32, np.float64),
-        # A number after a header of one byte is not aligned.
-        lambda action: np.frombuffer(b"h" + np.float32(action).tobytes(), np.float32, offset=1),
-    ]
-    for step in range(100):
-        index = step % len(actions)
-        action = kinds[step % len(kinds)]([list(actions)[index]])
-        found, expected = ours.step(action), discrete.step(index)
-        assert (found[0] == expected[0]).all() and found[1:] == expected[1:], step

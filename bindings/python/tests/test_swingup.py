@@ -91,15 +91,24 @@ def test_each_parameter_changes_both_environments_alike(name, kind, many):
 
 
 @pytest.mark.parametrize(
-    ("torques", "action", "torque"),
+    "convert",
+    [list, np.float32, np.float64,
+     # A number after a header of one byte is not aligned.
+     lambda action: np.frombuffer(b"h" + np.float32(action).tobytes(), np.float32, offset=1)],
+)  # fmt: skip
+@pytest.mark.parametrize(
+    ("kind", "torques", "action", "torque"),
     [
-        *(([-1.0, 3.0], *pair) for pair in [(np.inf, 3.0), (0.25, 0.75), (-0.5, -0.5), (-5, -1)]),
-        ([1.0, 3.0], 0.0, 1.0),
+        *((AcrobotSwingupEnv, [-1.0, 3.0], action, torque)
+          for action, torque in [(np.inf, 3.0), (0.25, 0.75), (-0.5, -0.5), (-5, -1)]),
+        (AcrobotSwingupEnv, [1.0, 3.0], 0.0, 1.0),
+        *((AcrobotContinuousEnv, [0.5, -3.0, 2.0], action, torque)
+          for action, torque in [(-np.inf, -3.0), (-4, -3.0), (0.25, 0.25), (2.0, 2.0), (3.0, 2.0)]),
     ],
-)
-def test_actions_are_parts_of_the_largest_and_the_smallest_torque(torques, action, torque):
-    env, twin = AcrobotSwingupEnv(AVAIL_TORQUE=torques), AcrobotSwingupEnv(AVAIL_TORQUE=[-4, 4])
-    env.state = twin.state = [1.0, 0.0, 0.0, 0.0]
-    env.step([action])
-    twin.step([torque / 4.0])
-    assert (env.state == twin.state).all()
+)  # fmt: skip
+def test_actions_are_torques_or_parts_of_them(kind, torques, action, torque, convert):
+    env = kind(AVAIL_TORQUE=torques)
+    env.state = [1.0, 0.0, 0.0, 0.0]
+    expected = control.simulate(env.state, [torque], env)[1]
+    env.step(convert([action]))
+    assert (env.state == expected).all()

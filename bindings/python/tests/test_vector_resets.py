@@ -16,8 +16,8 @@ from vectors import MODES, assert_equal, assert_resets_equal, different, make_ve
 
 
 def test_rejected_seeds_change_nothing():
-    envs = make_vec(2)
-    single = acrobot_rs.AcrobotEnv()
+    assert (make_vec(5).reset()[0] != make_vec(5).reset()[0]).any(), "random without a seed"
+    envs, single = make_vec(2), acrobot_rs.AcrobotEnv()
     for each in (single, envs):
         assert (each.reset(seed=np.uint8(255))[0] == each.reset(seed=255)[0]).all()
     bad_seeds = (-1, "4", 4.0, np.True_, 10**5000)
