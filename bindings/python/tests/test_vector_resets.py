@@ -116,11 +116,8 @@ def test_observations_of_initial_states_bit_identically(mode):
     """Computed in float32: one in 500 differs from the rounded sines of float64."""
     theirs, ours = pair(500, mode, max_episode_steps=1)
     assert_resets_equal(theirs, ours, seed=1)
-    mask = np.arange(500) % 2 == 0
-    for bounds in ({"low": -0.4, "high": 0.7}, {"low": -9.0, "high": 9.0}):
-        assert_resets_equal(theirs, ours, options=bounds)
-        for some in (mask, ~mask):
-            assert_resets_equal(theirs, ours, options={**bounds, "reset_mask": some})
+    options = {"low": -9.0, "high": 9.0, "reset_mask": np.arange(500) % 2 == 0}
+    assert_resets_equal(theirs, ours, options=options)
     for actions in np.random.default_rng(0).integers(3, size=(5, 500)):
         assert_equal(theirs.step(actions), ours.step(actions))
         if mode is AutoresetMode.DISABLED:
