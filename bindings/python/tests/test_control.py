@@ -189,7 +189,9 @@ def test_an_animation_is_in_real_time(dt, frames, tmp_path):
     assert_allclose(values - values[0], np.linspace(0, -1080, frames), atol=0.11)
 
 
-@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))])
+@pytest.mark.parametrize(
+    "again", [copy.copy, copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))]
+)
 def test_copies_continue(again):
     swing_up, far = control.SwingUp(6.0, FRICTION), [np.pi - 0.3, 0.0, 0.0, 0.0]
     pumping = again(swing_up)
