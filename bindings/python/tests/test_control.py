@@ -99,14 +99,9 @@ def std(**parameter_std):
     "call, message",
     [
         (lambda: control.energy([0.0] * 3), r"state must be .* \(\.\.\., 4\), got \(3,\)"),
-        (
-            lambda: control.energy([0, 0, 0, 1e300]),
-            "the numbers must be so small that energy is finite, got inf",
-        ),
+        (lambda: control.energy([0, 0, 0, 1e300]), "numbers must be .* energy is finite, got inf"),
         (lambda: control.simulate([REST] * 2, [[0]] * 3), "state, torques must be arrays that br"),
         (lambda: control.lqr(**MODEL | {"Q": -ONE}), "Q must be positive semidefinite"),
-        (lambda: control.Planner(-0.3), "max_torque must be finite and above 0 N m, got -0.3$"),
-        (lambda: control.Planner(1e300), r"max_torque .* in the range of float32, got 1e\+300"),
         (lambda: control.Planner(1e-60), "max_torque .* in the range of float32, got 1e-60"),
         (lambda: control.Planner(6, power=-0.3), "power must be .* at least 0 per J, got -0.3$"),
         (lambda: control.Planner(6, qf=ONE + 0.1 * np.eye(4, k=1)), "symmetric, got 0.1 and 0 on"),
