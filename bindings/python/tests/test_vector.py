@@ -43,9 +43,9 @@ def test_attributes_and_types_are_those_of_sync_vector_env():
 def test_invalid_actions_are_rejected(kind, actions):
     envs = kind(4)
     envs.reset(seed=1)
-    message = r"^actions(\[\d\])? must be (\w+ of shape \(4, ?1?\)|0|a number(, N m| from -1 to 1), got NaN)"
+    rule = r"\w+ of shape \(4, ?1?\)|0|a number(, N m| from -1 to 1), got NaN"
     for each in actions:
-        with rejects(envs, InvalidAction, message):
+        with rejects(envs, InvalidAction, rf"^actions(\[\d\])? must be ({rule})"):
             envs.step(each)
 
 
