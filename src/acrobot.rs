@@ -262,7 +262,7 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
 impl<A: Arithmetic, T: Task> Acrobot<A, T> {
     /// The largest size of a snapshot in postcard's format, bytes, without a checksum.
     pub const MAX_SNAPSHOT_SIZE: usize = crate::snapshot::Header::<A, T, false>::SIZE
-        + (21 + 4) * size_of::<A::Scalar>() // the parameters and the state
+        + (crate::physics::NUMBERS + 4) * size_of::<A::Scalar>() // the parameters and the state
         + 1 // the dynamics
         + Pcg64::MAX_SNAPSHOT_SIZE;
 }

@@ -96,7 +96,7 @@ fn number(text: &str) -> Option<&str> {
     words.find(|word| word.starts_with(|c: char| c.is_ascii_digit()))
 }
 
-/// Each language describes each parameter with the unit and the range that its error has.
+/// The comment of a parameter, which other languages repeat, has the unit and range of its error.
 #[test]
 fn parameters_are_described_with_their_units_and_ranges() {
     let mut params = Params::<f64>::DEFAULT;
@@ -112,61 +112,23 @@ fn parameters_are_described_with_their_units_and_ranges() {
             "a finite number of" => "finite",
             _ => rule,
         };
-        let field = name.split('[').next().unwrap();
-        check("src/physics/params.rs", ["pub ", field, ": "], unit, range);
-        let end = if name.ends_with(']') { "[" } else { ";" };
-        check("bindings/c/include/acrobot.h", ["float ", field, end], unit, range);
-        let camel_case = field.replace("_of_mass", "OfMass").replace("_velocity", "Velocity");
-        let camel_case = camel_case.replace("_noise", "Noise");
-        check("bindings/npm/package/index.d.ts", ["", &camel_case, ": "], unit, range);
-        let python = ["", IN_PYTHON[place], ": "];
-        check("bindings/python/python/acrobot_rs/parameters.py", python, unit, range);
+        check(name.split('[').next().unwrap(), unit, range);
     }
 }
 
-/// Python's name of each parameter.
-const IN_PYTHON: [&str; 21] = [
-    "LINK_LENGTH_1",
-    "LINK_LENGTH_2",
-    "LINK_MASS_1",
-    "LINK_MASS_2",
-    "LINK_COM_POS_1",
-    "LINK_COM_POS_2",
-    "LINK_MOI_1",
-    "LINK_MOI_2",
-    "gravity",
-    "dt",
-    "MAX_VEL_1",
-    "MAX_VEL_2",
-    "AVAIL_TORQUE",
-    "AVAIL_TORQUE",
-    "AVAIL_TORQUE",
-    "torque_noise_max",
-    "DAMPING_1",
-    "DAMPING_2",
-    "COULOMB_1",
-    "COULOMB_2",
-    "ROTOR",
-];
-
-/// The comment on a declaration's line and on those above it has the unit and the range, or says
-/// that they are those of another parameter, as in "As `mass1`".
-fn check(file: &str, [start, name, end]: [&str; 3], unit: &str, range: &str) {
-    let (text, declaration) = (text_of(file), [start, name, end].concat());
-    let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
-    let at = lines.iter().position(|line| line.starts_with(&declaration));
-    let at = at.unwrap_or_else(|| panic!("{file} has no {declaration}"));
-    let is_comment = |line: &&&str| ["//", "/**", "#:"].iter().any(|mark| line.starts_with(mark));
-    let above = lines[..at].iter().rev().take_while(is_comment);
-    let found: Vec<&str> = above.copied().chain([lines[at]]).collect();
-    let found = found.join(" ");
-    if let Some((_, other)) = found.split_once("As `").or_else(|| found.split_once("as `")) {
-        let (other, _) = other.split_once('`').unwrap();
-        return check(file, [start, other, end], unit, range);
+/// The comment has the unit and the range, or says that they are those of another parameter, as in
+/// "as `mass1`".
+fn check(field: &str, unit: &str, range: &str) {
+    let text = text_of("src/physics/params.rs");
+    let (before, _) = text.split_once(&format!("    pub {field}: ")).unwrap();
+    let lines = before.lines().rev().map_while(|line| line.trim().strip_prefix("///"));
+    let found = lines.collect::<Vec<_>>().into_iter().rev().collect::<String>();
+    if let Some((_, other)) = found.split_once("as `") {
+        return check(other.split('`').next().unwrap(), unit, range);
     }
     let says = |text: String| found.contains(&text);
     let has_unit = says(format!(" {unit};")) || says(format!(" {unit},"));
-    assert!(has_unit && says(format!("; {range}")), "{file}: {found:?}: {unit}; {range}");
+    assert!(has_unit && says(format!("; {range}")), "{field}: {found:?}: {unit}; {range}");
 }
 
 /// The pages name the repository's files by their paths, without links, because rustdoc shows the

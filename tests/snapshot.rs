@@ -3,6 +3,7 @@
 
 use acrobot::arithmetic::{Arithmetic, Damped, Reference};
 use acrobot::batch::{Member, VecBatch};
+use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use serde::Serialize;
@@ -116,6 +117,24 @@ fn snapshots_of_version_6_stay_readable() {
 
 /// The largest snapshot: all integers of the generator and of the limit have their largest value.
 /// The last arithmetic's name has 16 bytes, the most that a snapshot holds.
+#[test]
+fn an_estimator_continues_bit_identically() {
+    let std = ParameterStd { mass2: 0.1, ..ParameterStd::default() }; // kg
+    let noise = Noise { angle_std: 1e-3, torque_std: 0.01 }; // rad, N m
+    let mut estimator = ParameterEstimator::<Fast>::new(Params::DEFAULT, std, noise).unwrap();
+    for tick in 0..20 {
+        let bytes = postcard::to_stdvec(&estimator).unwrap();
+        let mut loaded: ParameterEstimator<Fast> = postcard::from_bytes(&bytes).unwrap();
+        for each in [&mut estimator, &mut loaded] {
+            each.correct([0.1 * tick as f32, 0.2]).unwrap(); // rad
+            each.predict(0.3).unwrap(); // N m
+        }
+        assert_eq!(postcard::to_stdvec(&loaded), postcard::to_stdvec(&estimator));
+        assert_eq!(loaded.params(), estimator.params());
+    }
+    assert_ne!(estimator.params().mass2, 1.0);
+}
+
 #[test]
 fn no_snapshot_is_larger_than_its_constant() {
     fn check<A: Arithmetic>() {

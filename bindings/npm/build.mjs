@@ -19,7 +19,10 @@ const runBeside = promisify(execFile);
  * A loop is unrolled fully or not at all, and only up to 3 iterations: loops over the 4 lanes of a
  * batch's block become vectors instead. Fewer functions are inlined.
  */
-const SMALL = ["-unroll-full-max-count=3", "-unroll-allow-partial=false", "-inline-threshold=60"];
+const VECTORS = [
+  "-Cllvm-args=-unroll-full-max-count=3", "-Cllvm-args=-unroll-allow-partial=false",
+  "-Cllvm-args=-inline-threshold=60", "-Copt-level=2",
+];
 /**
  * wasm-opt's passes for smaller code. `--const-hoisting` turns constants that occur often into
  * locals. `--low-memory-unused` is safe because Rust puts nothing below address 1024.
@@ -31,8 +34,7 @@ const PASSES = [
 
 /** Compiles a crate for WebAssembly, and makes the module smaller. Returns its bytes. */
 async function compile(name, crate, library, flags, options) {
-  const all = [...SMALL.map((option) => `-Cllvm-args=${option}`), "-Ctarget-feature=+simd128"];
-  const env = { ...process.env, RUSTFLAGS: [...all, ...flags].join(" ") };
+  const env = { ...process.env, RUSTFLAGS: ["-Ctarget-feature=+simd128", ...flags].join(" ") };
   // Named, because a user's configuration of Cargo may have others.
   const places = ["--target", "wasm32-unknown-unknown", "--target-dir", `target/${name}`];
   const common = ["--manifest-path", `${crate}/Cargo.toml`, "--quiet", "--locked", "--release"];
@@ -45,10 +47,11 @@ async function compile(name, crate, library, flags, options) {
   const inputs = [built, graph, "build.mjs", "package-lock.json"];
   if (time(out) < Math.max(...inputs.map(time))) {
     const binaryen = (tool, ...args) => runBeside(`node_modules/.bin/${tool}`, args);
-    await binaryen("wasm-metadce", built, "--graph-file", graph, "-o", out, "--all-features");
+    const reached = `${text}.wasm`;
+    await binaryen("wasm-metadce", built, "--graph-file", graph, "-o", reached, "--all-features");
     // As text first, for the test that nothing panics: in the binary format, code that is never
     // reached also ends in `unreachable`.
-    await binaryen("wasm-opt", out, "-S", "-o", text, ...PASSES);
+    await binaryen("wasm-opt", reached, "-S", "-o", text, ...PASSES);
     await binaryen("wasm-as", text, "-o", out, "--all-features");
   }
   return readFileSync(out);
@@ -65,11 +68,9 @@ function used(built) {
     .map(({ name }) => ({ name, root: true, export: name }));
 }
 
-/** The functions of bindings/abi with a feature. */
-const compileAbi = (name) => {
-  const features = ["--no-default-features", "--features", name];
-  return compile(name, "../abi", "acrobot", ["-Copt-level=2"], features);
-};
+/** Compiles the functions of bindings/abi with a feature. */
+const compileAbi = (name, flags) =>
+  compile(name, "../abi", "acrobot", flags, ["--no-default-features", "--features", name]);
 
 const ESM = { absWorkingDir: process.cwd(), bundle: true, format: "esm" };
 
@@ -103,9 +104,9 @@ mkdirSync("dist");
 // Names of the package stay, for messages and debuggers; those of the decompressor become short.
 buildSync({ entryPoints: ["tiny-inflate"], minify: true, outfile: "target/inflate.js", ...ESM });
 await Promise.all([
-  bundle("index", compileAbi("acrobots")),
-  bundle("control", compileAbi("control")),
-  bundle("policies", compile("learner", "learner", "acrobot_learner", [], [])),
+  bundle("index", compileAbi("acrobots", VECTORS)),
+  bundle("control", compileAbi("control", ["-Copt-level=s"])),
+  bundle("policies", compile("learner", "learner", "acrobot_learner", VECTORS, [])),
 ]);
 // npm shows what users need to know.
 writeFileSync("dist/README.md", readFileSync("README.md", "utf8").split("\n## Build and test")[0]);

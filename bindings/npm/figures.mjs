@@ -37,13 +37,13 @@ const size = (path) => {
   const code = readFileSync(path);
   return `${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)}`;
 };
-const control = kilobytes(statSync("target/acrobot_control.wasm").size);
+const control = kilobytes(statSync("target/control.wasm").size);
 const report = execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"]);
 const [{ size: packed, unpackedSize }] = JSON.parse(report);
 console.log(`
 | on one core, in Node.js ${process.versions.node.split(".")[0]} | |
 |---|---|
-| WebAssembly module, with simd128 | ${kilobytes(statSync("target/acrobot_npm.wasm").size)} |
+| WebAssembly module, with simd128 | ${kilobytes(statSync("target/acrobots.wasm").size)} |
 | \`index.js\`, with the module inside | ${size("dist/index.js")} |
 | \`policies.js\`, with the learner's inside | ${size("dist/policies.js")} |
 | \`control.js\`, with a module of ${control} inside | ${size("dist/control.js")} |

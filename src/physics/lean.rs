@@ -26,7 +26,7 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
         gravity1,
         gravity2,
         nips,
-        own: [upper, determinant, book, dry, _], // kg m², kg² m⁴, 1; 0 without dry friction and rotor
+        own: [upper, determinant, book, dry, _], // kg m², kg² m⁴, 1, N m or kg m²
         ..
     } = &model.constants;
     let mut coupling_cos = coupling * cos2;

@@ -23,14 +23,17 @@ pub enum Dynamics {
 ///
 /// Link 1 hangs from the fixed joint and link 2 from the tip of link 1. The motor is between the
 /// two links. All fields are in SI units; [`validate`](Self::validate) checks their ranges.
+// bindings/abi/derive.py copies the first paragraph of each field to other languages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Params<S = f64> {
     /// Length of link 1, m; above 0.
     pub length1: S,
-    /// Length of link 2, m; above 0. Only [`positions`](super::Pendulum::positions), the tip's
-    /// height and drawings use it: the equations of motion and Gymnasium's goal do not.
+    /// Length of link 2, m; above 0. Only the tip's height and drawings depend on it.
+    ///
+    /// Only [`positions`](super::Pendulum::positions) uses it: the equations of motion and
+    /// Gymnasium's goal do not.
     pub length2: S,
     /// Mass of link 1, kg; above 0.
     pub mass1: S,
@@ -50,35 +53,45 @@ pub struct Params<S = f64> {
     /// Duration of one step, s; above 0.
     pub dt: S,
     #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
-    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity is none, stored as 3.4e38,
-    /// the largest `f32`, because observations are `f32`. JSON's writers make `null` of it, which
-    /// loads as infinity.
+    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as
+    /// 3.4e38, the largest number in single precision, which observations have.
+    ///
+    /// JSON's writers make `null` of infinity, which loads as infinity.
     pub max_velocity1: S,
     #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,
-    /// Torques of the three actions, N m, in the order of their numbers; finite. They do not limit
-    /// `step_torque`.
+    /// Torques of the three actions, N m, in the order of their numbers; finite.
+    ///
+    /// They do not limit `step_torque`.
     pub torques: [S; 3],
-    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise), rounded to
-    /// the scalar, to the torque. 0 draws nothing.
+    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
+    /// torque; 0 draws nothing.
+    ///
+    /// The draw is rounded to the scalar.
     pub torque_noise: S,
-    /// The equations of motion.
+    /// The equations of motion: of Sutton and Barto's book, or of the paper of 1996 (NIPS 8).
     pub dynamics: Dynamics,
     /// Viscous friction of the fixed joint, which resists θ̇1 with a torque in proportion to it,
-    /// N m s/rad; 0 or more. This and the fields below must be 0 in an arithmetic without friction:
-    /// see [`Damped`](crate::arithmetic::Damped).
+    /// N m s/rad; 0 or more.
+    ///
+    /// This and the fields below must be 0 in an arithmetic without friction: see
+    /// [`Damped`](crate::arithmetic::Damped).
     pub damping1: S,
     /// Viscous friction of the elbow, which resists θ̇2; as `damping1`.
     pub damping2: S,
     /// Coulomb friction of the fixed joint: its torque as soon as the joint turns, N m; 0 or more.
+    ///
     /// Below 0.02 rad/s, or [a larger velocity where `dt` and viscous friction need
     /// it](crate::guide::equations#friction-and-rotors), it is smooth.
     pub coulomb1: S,
     /// Coulomb friction of the elbow; as `coulomb1`.
     pub coulomb2: S,
-    /// What a [geared rotor](Self::with_rotor) in the elbow takes from the coupling of the links,
-    /// kg m²; finite, and so small that the mass matrix is positive definite.
+    /// What a geared rotor in the elbow takes from the coupling of the links, kg m²; finite, and so
+    /// small that the mass matrix is positive definite. A rotor of moment of inertia J behind a
+    /// gear g adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1) g J here.
+    ///
+    /// [`with_rotor`](Self::with_rotor) does that.
     pub rotor: S,
 }
 
@@ -159,8 +172,11 @@ impl<S: Real> Params<S> {
     }
 }
 
+/// How many numbers the parameters are.
+pub(crate) const NUMBERS: usize = 21;
+
 /// The name, unit and range of each number.
-pub(crate) const FIELDS: [(&str, &str, Range); 21] = {
+pub(crate) const FIELDS: [(&str, &str, Range); NUMBERS] = {
     use Range::{AboveZero, AtLeastNormalF32, AtLeastZero, Finite};
     [
         ("length1", "m", AboveZero),
@@ -186,20 +202,20 @@ pub(crate) const FIELDS: [(&str, &str, Range); 21] = {
         ("rotor", "kg m²", Finite),
     ]
 };
-/// The fields from here on must be 0 in an arithmetic without friction.
-const OF_FRICTION: usize = 16;
+/// The last fields, from here on, must be 0 in an arithmetic without friction.
+const OF_FRICTION: usize = NUMBERS - 5;
 
 impl<S: Copy> Params<S> {
     /// The name and the value of each number, in the order of the fields.
     #[must_use]
-    pub fn numbers(&self) -> [(&'static str, S); 21] {
+    pub fn numbers(&self) -> [(&'static str, S); NUMBERS] {
         let mut numbers = *self;
         let mut names = FIELDS.into_iter();
         numbers.numbers_mut().map(|number| (names.next().map_or("", |(name, ..)| name), *number))
     }
 
     /// Each number, to change it, in the order of the fields.
-    pub const fn numbers_mut(&mut self) -> [&mut S; 21] {
+    pub const fn numbers_mut(&mut self) -> [&mut S; NUMBERS] {
         let [negative, zero, positive] = &mut self.torques;
         [
             &mut self.length1,

@@ -298,6 +298,22 @@ impl<A: Arithmetic> defmt::Format for Pendulum<A> {
     }
 }
 
+#[cfg(feature = "serde")]
+impl<A: Arithmetic> serde::Serialize for Pendulum<A> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (self.params(), self.state()).serialize(serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de, A: Arithmetic> serde::Deserialize<'de> for Pendulum<A> {
+    /// Rejects what `new` rejects.
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (params, state) = serde::Deserialize::deserialize(deserializer)?;
+        Self::new(params, state).map_err(serde::de::Error::custom)
+    }
+}
+
 pub(crate) fn check_torque<S: Real>(torque: S) -> Result<(), Error> {
     Range::Finite.check("torque", torque.to_f64(), "N m")
 }

@@ -117,13 +117,15 @@ impl Holder for acrobot_batch_t {
 const _: () = {
     assert!(align_of::<acrobot_batch_t>() == ACROBOT_BATCH_ALIGN);
     assert!(align_of::<LanesBlock>() <= ACROBOT_BATCH_ALIGN);
-    // The header has these numbers.
-    let sizes = match LANES {
-        1 => (64, 192, 40),
-        4 => (192, 576, 80),
-        _ => (640, 2240, 80),
+    // cbindgen.toml has these numbers for the header. An error of the compiler shows both.
+    const SIZES: [usize; 3] = match LANES {
+        1 => [64, 192, 40],
+        4 => [192, 576, 80],
+        _ => [640, 2240, 80],
     };
-    assert!(BLOCK == sizes.0 && OWN == sizes.1 && GENERATOR == sizes.2);
+    let _: [(); SIZES[0]] = [(); BLOCK];
+    let _: [(); SIZES[1]] = [(); OWN];
+    let _: [(); SIZES[2]] = [(); GENERATOR];
     // The batch writes an observation as six floats.
     assert!(align_of::<[f32; 6]>() == align_of::<acrobot_observation_t>());
 };
@@ -195,9 +197,10 @@ pub unsafe fn place(
     Ok(())
 }
 
-/// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's parameters,
-/// in initial states. Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`.
-/// `batch` receives the batch's address. With `own_params` acrobots can have different parameters.
+/// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's
+/// parameters, in initial states. Acrobot `i` is seeded with NumPy's
+/// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address. With `own_params`
+/// acrobots can have different parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_init(
     memory: *mut c_void,

@@ -93,53 +93,58 @@ impl From<acrobot_state_t> for State<f32> {
 }
 
 /// To change one parameter, read all with acrobot_params, and set them.
+// derive.py writes the fields of these structs.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_params_t {
     /// Length of link 1, m; above 0. Default 1.
     pub length1: f32,
-    /// Length of link 2, m; above 0. Default 1. Only the height of the tip depends on it.
+    /// Length of link 2, m; above 0. Only the tip's height and drawings depend on it. Default 1.
     pub length2: f32,
     /// Mass of link 1, kg; above 0. Default 1.
     pub mass1: f32,
-    /// As `mass1`, of link 2.
+    /// Mass of link 2, kg; above 0. Default 1.
     pub mass2: f32,
     /// Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5.
     pub center_of_mass1: f32,
-    /// As `center_of_mass1`, of link 2.
+    /// Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5.
     pub center_of_mass2: f32,
     /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
     /// centre of mass is on the joint. Default 1.
     pub inertia1: f32,
-    /// As `inertia1`, of link 2.
+    /// Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`. Default 1.
     pub inertia2: f32,
-    /// Acceleration of gravity, m/s², downwards; finite. Default 9.8.
+    /// Acceleration of gravity, m/s², downwards; finite, 0 for none. Default 9.8.
     pub gravity: f32,
     /// Duration of one step, s; above 0. Default 0.2.
     pub dt: f32,
-    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, INFINITY for none. Default 4 π.
+    /// Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as
+    /// 3.4e38, the largest number in single precision, which observations have. Default 4 π.
     pub max_velocity1: f32,
-    /// As `max_velocity1`, of |θ̇2|. Default 9 π.
+    /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
     pub max_velocity2: f32,
-    /// Torques of the three actions, N m, in their order; finite. Default −1, 0 and 1.
+    /// Torques of the three actions, N m, in the order of their numbers; finite. Default
+    /// [−1, 0, 1].
     pub torques: [f32; 3],
     /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
-    /// torque; 0, the default, draws nothing.
+    /// torque; 0 draws nothing. Default 0.
     pub torque_noise: f32,
-    /// Viscous friction of the fixed joint, N m s/rad; 0 or more. Default 0.
+    /// Viscous friction of the fixed joint, which resists θ̇1 with a torque in proportion to it,
+    /// N m s/rad; 0 or more. Default 0.
     pub damping1: f32,
-    /// As `damping1`, of the elbow.
+    /// Viscous friction of the elbow, which resists θ̇2; as `damping1`. Default 0.
     pub damping2: f32,
-    /// Coulomb friction of the fixed joint, N m; 0 or more. Default 0.
+    /// Coulomb friction of the fixed joint: its torque as soon as the joint turns, N m; 0 or more.
+    /// Default 0.
     pub coulomb1: f32,
-    /// As `coulomb1`, of the elbow.
+    /// Coulomb friction of the elbow; as `coulomb1`. Default 0.
     pub coulomb2: f32,
-    /// What a geared rotor takes from the coupling of the links, kg m²; finite, and so small that
-    /// the mass matrix is positive definite. Default 0. A rotor of moment of inertia J, kg m²,
-    /// behind a gear g in the elbow adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1)
-    /// g J here.
+    /// What a geared rotor in the elbow takes from the coupling of the links, kg m²; finite, and so
+    /// small that the mass matrix is positive definite. A rotor of moment of inertia J behind a
+    /// gear g adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1) g J here. Default 0.
     pub rotor: f32,
-    /// The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
+    /// The equations of motion: of Sutton and Barto's book, or of the paper of 1996 (NIPS 8).
+    /// Default ACROBOT_DYNAMICS_BOOK.
     pub dynamics: c_int,
 }
 
@@ -196,7 +201,7 @@ pub struct acrobot_draws_t {
 
 /// The numbers of [`acrobot_params_t`] and [`acrobot_draws_t`], in the order of
 /// [`Params::numbers`].
-const NUMBERS: usize = 21;
+const NUMBERS: usize = size_of::<acrobot_draws_t>() / size_of::<acrobot_draw_t>();
 
 /// [`acrobot_params_t`] without names.
 #[repr(C)]

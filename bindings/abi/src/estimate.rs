@@ -32,18 +32,29 @@ impl From<acrobot_noise_t> for Noise<f32> {
 }
 
 /// The standard deviations of parameters, each in its unit: 0 for one that is known.
+// derive.py writes the fields.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_parameter_std_t {
+    /// Of the mass of link 1, kg.
     pub mass1: f32,
+    /// Of the mass of link 2, kg.
     pub mass2: f32,
+    /// Of the length of link 1, m.
     pub length1: f32,
+    /// Of the moment of inertia of link 1, kg m².
     pub inertia1: f32,
+    /// Of the moment of inertia of link 2, kg m².
     pub inertia2: f32,
+    /// Of the viscous friction of joint 1, N m s/rad.
     pub damping1: f32,
+    /// Of the viscous friction of joint 2, N m s/rad.
     pub damping2: f32,
+    /// Of the Coulomb friction of joint 1, N m.
     pub coulomb1: f32,
+    /// Of the Coulomb friction of joint 2, N m.
     pub coulomb2: f32,
+    /// Of the rotor, kg m².
     pub rotor: f32,
 }
 

@@ -1,6 +1,6 @@
 //! The one door: what other languages may do. C links these functions, and the npm package has them
-//! as WebAssembly. cbindgen writes `../c/include/acrobot.h` from these files, with their comments:
-//! `cbindgen --output ../c/include/acrobot.h`. Each night CI compares.
+//! as WebAssembly. `python3 derive.py` writes what other languages repeat of these files and of the
+//! crate: with cbindgen `../c/include/acrobot.h`, and parts of the bindings and pages.
 //!
 //! All `unsafe` is here: the crate sees only valid references.
 
@@ -54,6 +54,9 @@ pub mod snapshot;
 
 #[cfg(target_family = "wasm")]
 mod heap;
+
+#[cfg(all(target_family = "wasm", feature = "acrobots", feature = "control"))]
+mod layout;
 
 #[cfg(feature = "acrobots")]
 mod linked;

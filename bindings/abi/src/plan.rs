@@ -14,31 +14,39 @@ use crate::memory::{Holder, Span, array, change, check, check_apart, get, init, 
 use crate::model::compute;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
-/// The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
+/// The weights of what a plan costs, 0 or more: a larger one makes its term smaller. The defaults
+/// are those of acrobot_problem_init: u is the largest torque, and T² the inertia of the straight
+/// machine about the fixed joint, divided by the sum of the torque of gravity when it is level and
+/// u.
+// derive.py writes the fields.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_cost_t {
-    /// Q of xᵀ Q x for the deviation x from the target, by rows, symmetric: 1/(rad² s), 1/rad² and
-    /// s/rad².
+    /// Q of xᵀ Q x, for the deviation x from the target, by rows: 1/(rad² s), 1/rad² and s/rad²;
+    /// symmetric and positive semidefinite. Default 0.
     pub q: [[f32; 4]; 4],
-    /// The same of the state after the plan: 1/rad², s/rad² and s²/rad².
+    /// The same of the state after the plan: 1/rad², s/rad² and s²/rad². Default 0.
     pub qf: [[f32; 4]; 4],
-    /// Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s.
+    /// Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s: of x² where it is
+    /// small. Default 0.
     pub angles: [f32; 2],
-    /// Of the squared difference of the torque from that which holds the target, 1/((N m)² s).
+    /// R: of the square of the torque's difference from that which holds the target, 1/((N m)² s).
+    /// Default 0.1 / (T u²).
     pub torque: f32,
-    /// Of the squared change of the torque from step to step, 1/(N m)².
+    /// Of the square of the torque's change from one step to the next, 1/(N m)². Default 0.
     pub torque_change: f32,
-    /// Of the absolute value of the motor's power, 1/J.
+    /// Of the absolute value of the motor's power, 1/J. Default 0.
     pub power: f32,
-    /// Of the time that the tip is below `height`, 1/s.
+    /// Of the time that the tip is below `height`, 1/s. Default 0.4 / T.
     pub below: f32,
-    /// A height of the tip above the fixed joint, m.
+    /// The height of the tip above the fixed joint, m, from which on `below` costs nothing. Default
+    /// that of the target.
     pub height: f32,
-    /// `below` costs half where the tip is so far below `height`, m; above 0.
+    /// `below` costs half where the tip is so far below `height`, m; above 0. Default a tenth of
+    /// both lengths.
     pub margin: f32,
-    /// Of ln(1 + e) after the plan, where e is 1 at the border of the region in which the regulator
-    /// holds.
+    /// Of ln(1 + e) for the state after the plan, where e is 1 at the border of the region in which
+    /// the regulator holds. Default 20.
     pub arrival: f32,
 }
 

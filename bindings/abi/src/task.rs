@@ -9,7 +9,9 @@ use acrobot::task::{AnyTask, ResetBounds};
 use crate::memory::{Span, check_apart, read, read_slice};
 use crate::status::Rejected;
 
-/// Gymnasium's `Acrobot-v1`: swing the tip above a height.
+// derive.py writes the tasks.
+
+/// Gymnasium's `Acrobot-v1`: swing the tip above a height within 500 steps of 0.2 s.
 pub const ACROBOT_TASK_GYMNASIUM: c_int = 0;
 
 /// dm_control's `acrobot-swingup`, with friction: from rest anywhere to upright within 1,000 steps
@@ -21,9 +23,11 @@ pub const ACROBOT_TASK_SWINGUP: c_int = 1;
 /// reward is 1 upright and 0 hanging.
 pub const ACROBOT_TASK_BALANCE: c_int = 2;
 
+// The end of the tasks.
+
 pub fn task_of(number: c_int) -> Result<AnyTask, Rejected> {
     let task = usize::try_from(number).ok().and_then(|index| AnyTask::ALL.get(index));
-    task.copied().ok_or(Rejected::number("task", number.into(), "", "from 0 to 2"))
+    task.copied().ok_or(Rejected::number("task", number.into(), "", "an ACROBOT_TASK"))
 }
 
 /// What a reset may choose. Zeros: the random numbers continue, within the task's bounds.

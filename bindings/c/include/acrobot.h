@@ -87,7 +87,7 @@
 // standard deviation above 0.
 #define ACROBOT_DRAW_NORMAL 3
 
-// Gymnasium's `Acrobot-v1`: swing the tip above a height.
+// Gymnasium's `Acrobot-v1`: swing the tip above a height within 500 steps of 0.2 s.
 #define ACROBOT_TASK_GYMNASIUM 0
 
 // dm_control's `acrobot-swingup`, with friction: from rest anywhere to upright within 1,000 steps
@@ -259,48 +259,52 @@ typedef struct {
 typedef struct {
   // Length of link 1, m; above 0. Default 1.
   float length1;
-  // Length of link 2, m; above 0. Default 1. Only the height of the tip depends on it.
+  // Length of link 2, m; above 0. Only the tip's height and drawings depend on it. Default 1.
   float length2;
   // Mass of link 1, kg; above 0. Default 1.
   float mass1;
-  // As `mass1`, of link 2.
+  // Mass of link 2, kg; above 0. Default 1.
   float mass2;
   // Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5.
   float center_of_mass1;
-  // As `center_of_mass1`, of link 2.
+  // Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5.
   float center_of_mass2;
   // Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
   // centre of mass is on the joint. Default 1.
   float inertia1;
-  // As `inertia1`, of link 2.
+  // Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`. Default 1.
   float inertia2;
-  // Acceleration of gravity, m/s², downwards; finite. Default 9.8.
+  // Acceleration of gravity, m/s², downwards; finite, 0 for none. Default 9.8.
   float gravity;
   // Duration of one step, s; above 0. Default 0.2.
   float dt;
-  // Bound of |θ̇1| after a step, rad/s; at least 1.2e-38, INFINITY for none. Default 4 π.
+  // Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as
+  // 3.4e38, the largest number in single precision, which observations have. Default 4 π.
   float max_velocity1;
-  // As `max_velocity1`, of |θ̇2|. Default 9 π.
+  // Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
   float max_velocity2;
-  // Torques of the three actions, N m, in their order; finite. Default −1, 0 and 1.
+  // Torques of the three actions, N m, in the order of their numbers; finite. Default
+  // [−1, 0, 1].
   float torques[3];
   // Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
-  // torque; 0, the default, draws nothing.
+  // torque; 0 draws nothing. Default 0.
   float torque_noise;
-  // Viscous friction of the fixed joint, N m s/rad; 0 or more. Default 0.
+  // Viscous friction of the fixed joint, which resists θ̇1 with a torque in proportion to it,
+  // N m s/rad; 0 or more. Default 0.
   float damping1;
-  // As `damping1`, of the elbow.
+  // Viscous friction of the elbow, which resists θ̇2; as `damping1`. Default 0.
   float damping2;
-  // Coulomb friction of the fixed joint, N m; 0 or more. Default 0.
+  // Coulomb friction of the fixed joint: its torque as soon as the joint turns, N m; 0 or more.
+  // Default 0.
   float coulomb1;
-  // As `coulomb1`, of the elbow.
+  // Coulomb friction of the elbow; as `coulomb1`. Default 0.
   float coulomb2;
-  // What a geared rotor takes from the coupling of the links, kg m²; finite, and so small that
-  // the mass matrix is positive definite. Default 0. A rotor of moment of inertia J, kg m²,
-  // behind a gear g in the elbow adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1)
-  // g J here.
+  // What a geared rotor in the elbow takes from the coupling of the links, kg m²; finite, and so
+  // small that the mass matrix is positive definite. A rotor of moment of inertia J behind a
+  // gear g adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1) g J here. Default 0.
   float rotor;
-  // The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
+  // The equations of motion: of Sutton and Barto's book, or of the paper of 1996 (NIPS 8).
+  // Default ACROBOT_DYNAMICS_BOOK.
   int dynamics;
 } acrobot_params_t;
 
@@ -388,29 +392,36 @@ typedef struct {
   float cost_to_go[4][4];
 } acrobot_lqr_t;
 
-// The weights of what a plan costs, 0 or more: a larger one makes its term smaller.
+// The weights of what a plan costs, 0 or more: a larger one makes its term smaller. The defaults
+// are those of acrobot_problem_init: u is the largest torque, and T² the inertia of the straight
+// machine about the fixed joint, divided by the sum of the torque of gravity when it is level and
+// u.
 typedef struct {
-  // Q of xᵀ Q x for the deviation x from the target, by rows, symmetric: 1/(rad² s), 1/rad² and
-  // s/rad².
+  // Q of xᵀ Q x, for the deviation x from the target, by rows: 1/(rad² s), 1/rad² and s/rad²;
+  // symmetric and positive semidefinite. Default 0.
   float q[4][4];
-  // The same of the state after the plan: 1/rad², s/rad² and s²/rad².
+  // The same of the state after the plan: 1/rad², s/rad² and s²/rad². Default 0.
   float qf[4][4];
-  // Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s.
+  // Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s: of x² where it is
+  // small. Default 0.
   float angles[2];
-  // Of the squared difference of the torque from that which holds the target, 1/((N m)² s).
+  // R: of the square of the torque's difference from that which holds the target, 1/((N m)² s).
+  // Default 0.1 / (T u²).
   float torque;
-  // Of the squared change of the torque from step to step, 1/(N m)².
+  // Of the square of the torque's change from one step to the next, 1/(N m)². Default 0.
   float torque_change;
-  // Of the absolute value of the motor's power, 1/J.
+  // Of the absolute value of the motor's power, 1/J. Default 0.
   float power;
-  // Of the time that the tip is below `height`, 1/s.
+  // Of the time that the tip is below `height`, 1/s. Default 0.4 / T.
   float below;
-  // A height of the tip above the fixed joint, m.
+  // The height of the tip above the fixed joint, m, from which on `below` costs nothing. Default
+  // that of the target.
   float height;
-  // `below` costs half where the tip is so far below `height`, m; above 0.
+  // `below` costs half where the tip is so far below `height`, m; above 0. Default a tenth of
+  // both lengths.
   float margin;
-  // Of ln(1 + e) after the plan, where e is 1 at the border of the region in which the regulator
-  // holds.
+  // Of ln(1 + e) for the state after the plan, where e is 1 at the border of the region in which
+  // the regulator holds. Default 20.
   float arrival;
 } acrobot_cost_t;
 
@@ -490,15 +501,25 @@ typedef struct ACROBOT_ALIGNED(16) {
 
 // The standard deviations of parameters, each in its unit: 0 for one that is known.
 typedef struct {
+  // Of the mass of link 1, kg.
   float mass1;
+  // Of the mass of link 2, kg.
   float mass2;
+  // Of the length of link 1, m.
   float length1;
+  // Of the moment of inertia of link 1, kg m².
   float inertia1;
+  // Of the moment of inertia of link 2, kg m².
   float inertia2;
+  // Of the viscous friction of joint 1, N m s/rad.
   float damping1;
+  // Of the viscous friction of joint 2, N m s/rad.
   float damping2;
+  // Of the Coulomb friction of joint 1, N m.
   float coulomb1;
+  // Of the Coulomb friction of joint 2, N m.
   float coulomb2;
+  // Of the rotor, kg m².
   float rotor;
 } acrobot_parameter_std_t;
 
@@ -975,9 +996,10 @@ acrobot_status_t acrobot_action_space_sample_each(acrobot_action_space_t *action
 // SIZE_MAX.
 size_t acrobot_batch_size(size_t count, bool own_params);
 
-// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's parameters,
-// in initial states. Acrobot `i` is seeded with NumPy's `SeedSequence(seed).spawn(count)[i]`.
-// `batch` receives the batch's address. With `own_params` acrobots can have different parameters.
+// Makes a batch of an ACROBOT_TASK in `memory`, which has `size` bytes, with the task's
+// parameters, in initial states. Acrobot `i` is seeded with NumPy's
+// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address. With `own_params`
+// acrobots can have different parameters.
 acrobot_status_t acrobot_batch_init(void *memory,
                                     size_t size,
                                     size_t count,

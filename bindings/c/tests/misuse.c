@@ -309,7 +309,6 @@ static void arguments_of_an_acrobot(void)
     params_rejects("dynamics must be 0 (book) or 1 (NIPS), got 256", params.dynamics = 256);
     expect_message(acrobot_set_max_steps(acrobot, 0, &error),
                    "max_steps must be above 0 steps, got ");
-    CHECK(same_text(error.unit, "steps") && error.value == 0);
     REJECTED(NULL, acrobot_set_state(acrobot, NULL, &error));
     REJECTED(NULL, acrobot_set_params(acrobot, NULL, &error));
     REJECTED(NULL, acrobot_draw_params(acrobot, NULL, &error));

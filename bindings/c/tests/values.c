@@ -191,28 +191,6 @@ static void swing_ups(void)
 #endif
 }
 
-// The first row of tests/data/draws.csv.
-static void drawn_parameters(void)
-{
-    static acrobot_draws_t draws;
-    const acrobot_draw_t mass2 = {ACROBOT_DRAW_UNIFORM, .8f, 1.2f, 0, 0};
-    const acrobot_draw_t inertia1 = {ACROBOT_DRAW_LOG_UNIFORM, .5f, 2, 0, 0};
-    const acrobot_draw_t gravity = {ACROBOT_DRAW_NORMAL, 9.5f, 10.1f, 9.8f, .1f};
-    const acrobot_draw_t dry = {ACROBOT_DRAW_UNIFORM, .1f, .1f, 0, 0};
-    acrobot_t acrobot;
-    acrobot_params_t params;
-    draws.mass2 = mass2;
-    draws.inertia1 = inertia1;
-    draws.gravity = gravity;
-    draws.coulomb2 = dry;
-    ACCEPTED(acrobot_init(&acrobot, 42));
-    ACCEPTED(acrobot_draw_params(&acrobot, &draws, NULL));
-    ACCEPTED(acrobot_params(&acrobot, &params));
-    CHECK(params.mass1 == 1 && params.mass2 == .837671f && params.gravity == 9.766048f);
-    CHECK(params.inertia1 == 1.9335401f && params.inertia2 == 1);
-    CHECK(params.coulomb1 == 0 && params.coulomb2 == .1f && params.rotor == 0);
-}
-
 static void controllers(void)
 {
     static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1315927f, 0, 0, 0},
@@ -306,7 +284,6 @@ int main(void)
 {
     an_acrobot();
     actions();
-    drawn_parameters();
     a_batch();
     swing_ups();
     controllers();

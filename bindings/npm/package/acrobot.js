@@ -2,16 +2,17 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, NONE, TASKS, isAction, readDraws, readOptions, sample, save,
+  ACTION, NONE, isAction, readDraws, readOptions, sample, save,
 } from "./environment.js";
 import {
-  Kept, accept, addressOf, allFields, bytesAt, call, hold, orFree, pack, paramsOf, read, readChanges,
+  Kept, accept, addressOf, bytesAt, call, hold, orFree, pack, paramsOf, read, readAll, readChanges,
   resetOptions, scratch, unpack, wasm,
 } from "./kept.js";
-import { SIZES, STRUCTS } from "./layout.js";
+import { SIZES, STRUCTS, TASKS } from "./layout.js";
 import { copied, invalid, invalidSingle, isFinite32, randomSeed } from "./wasm.js";
 
-const { acrobot_params_t: PARAMS, acrobot_state_t: STATE } = STRUCTS;
+const { acrobot_params_t: PARAMS, acrobot_state_t: STATE, acrobot_step_t: STEP } = STRUCTS;
+const [[REWARD], [FLAGS]] = [STEP.reward, STEP.flags];
 
 /** A copy of an observation, by a loop, because `slice` takes half as long again. */
 function observationOf(numbers) {
@@ -22,8 +23,8 @@ function observationOf(numbers) {
 
 /** Reads an acrobot_step_t. */
 function resultsOf({ numbers, flags }) {
-  const [terminated, truncated] = [flags[28] !== 0, flags[29] !== 0];
-  return { observation: observationOf(numbers), reward: numbers[6], terminated, truncated };
+  const [terminated, truncated] = [flags[4 * FLAGS] !== 0, flags[4 * FLAGS + 1] !== 0];
+  return { observation: observationOf(numbers), reward: numbers[REWARD], terminated, truncated };
 }
 
 export class Acrobot extends Kept {
@@ -114,8 +115,8 @@ export class Acrobot extends Kept {
   }
 
   set state(state) {
-    const given = allFields("state", state, STATE);
-    call(given, "acrobot_set_state", this, pack(new Float32Array(4), given, STATE));
+    const [given, words] = readAll("state", state, STATE);
+    call(given, "acrobot_set_state", this, words);
   }
 
   get energy() {

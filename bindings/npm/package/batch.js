@@ -2,13 +2,13 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, NONE, TASKS, isAction, readDraws, readOptions, sample, save,
+  ACTION, NONE, isAction, readDraws, readOptions, sample, save,
 } from "./environment.js";
 import {
-  Kept, accept, addressOf, allFields, call, elements, hold, indexOf, pack, padded, paramsOf, read,
-  readChanges, resetOptions, unpack, wasm,
+  Kept, accept, addressOf, call, elements, hold, indexOf, pack, padded, paramsOf, read, readAll,
+  readChanges, resetOptions, scratch, unpack, wasm,
 } from "./kept.js";
-import { SIZES, STRUCTS } from "./layout.js";
+import { SIZES, STRUCTS, TASKS } from "./layout.js";
 import { copied, invalid, isFinite32, positive, randomSeed } from "./wasm.js";
 
 const {
@@ -28,7 +28,6 @@ const ARRAYS = {
   finalObservations: [Float32Array, 6],
   actions: [Uint8Array, 1],
   torques: [Float32Array, 1],
-  mask: [Uint8Array, 1],
 };
 
 export class Batch extends Kept {
@@ -72,6 +71,10 @@ export class Batch extends Kept {
     batch.#make(count[0], own[0] !== 0, (size, to) =>
       call(bytes, "acrobot_batch_load", batch, size, bytes, length, to),
     );
+    const { done } = batch.#view();
+    done.forEach((_, i) => {
+      done[i] = read("acrobot_batch_is_done", addressOf(batch), i).flags[0];
+    });
     return batch;
   }
 
@@ -107,15 +110,12 @@ export class Batch extends Kept {
       task: TASKS[task],
     });
     [this.#views, this.#results] = [{}, {}];
-    const { pointers, actions, done } = this.#view();
+    const pointers = new Uint32Array(wasm().memory.buffer, addressOf(this) + this.#places.pointers);
     for (const [name, [word]] of Object.entries(RESULTS)) {
       const isNull = name === "finalObservations" && this.#settings.autoreset !== "SameStep";
       pointers[word] = isNull ? 0 : addressOf(this) + this.#places[name];
     }
-    actions.fill(NONE);
-    for (let i = 0; i < count; i++) {
-      done[i] = read("acrobot_batch_is_done", addressOf(this), i).flags[0];
-    }
+    this.#view().actions.fill(NONE);
     this.sample(randomSeed());
     this.#observe();
     this.#copyResults();
@@ -131,7 +131,6 @@ export class Batch extends Kept {
       for (const [name, [Type, width]] of Object.entries(ARRAYS)) {
         this.#views[name] = view(name, Type, width * count);
       }
-      this.#views.pointers = view("pointers", Uint32Array, Object.keys(RESULTS).length);
       this.#views.words = ["done", "terminated", "truncated"].map((name) =>
         view(name, Uint32Array, Math.ceil(count / 4)),
       );
@@ -217,11 +216,11 @@ export class Batch extends Kept {
     const inputs = isRead ? given : elements(what, given, count, isValid, rule);
     const address = addressOf(this);
     const views = this.#view();
-    const [written, { pointers }] = [views[what], views];
+    const written = views[what];
     written.set(inputs);
     const isTorque = what === "torques";
     const step = isTorque ? wasm().acrobot_batch_step_torque : wasm().acrobot_batch_step;
-    if (step(address, written.byteOffset, pointers.byteOffset, count) !== 0) {
+    if (step(address, written.byteOffset, address + this.#places.pointers, count) !== 0) {
       const index = written.findIndex((each) => !isValid(each));
       throw invalid(`${what}[${index}] ${rule}`, written[index]);
     }
@@ -242,8 +241,7 @@ export class Batch extends Kept {
 
   setStateOf(index, state) {
     this.#checkIndex(index);
-    const given = allFields("state", state, STATE);
-    const words = pack(new Float32Array(4), given, STATE);
+    const [given, words] = readAll("state", state, STATE);
     call(given, "acrobot_batch_set_state", this, index, words);
     this.#stale = true;
   }
@@ -259,9 +257,11 @@ export class Batch extends Kept {
 
   setStates(states) {
     const rule = "must be a finite number of rad or rad/s";
-    const given = Float32Array.from(elements("states", states, 4 * this.count, isFinite32, rule));
+    const given = elements("states", states, 4 * this.count, isFinite32, rule);
+    const [address, { numbers, result }] = [addressOf(this), scratch()];
     for (let i = 0; i < this.count; i++) {
-      call({}, "acrobot_batch_set_state", this, i, given.slice(4 * i, 4 * i + 4));
+      numbers.set(given.slice(4 * i, 4 * i + 4));
+      accept(wasm().acrobot_batch_set_state(address, i, result, 0));
     }
     this.#stale = true;
   }

@@ -109,27 +109,42 @@ export function tvlqr(
  */
 export interface Cost {
   /**
-   * Q of xᵀ Q x for the deviation x from the target, symmetric: 1/(rad² s), 1/rad² and s/rad².
-   * Default: zeros.
+   * Q of xᵀ Q x, for the deviation x from the target, by rows: 1/(rad² s), 1/rad² and s/rad²;
+   * symmetric and positive semidefinite. Default 0.
    */
   q: Matrix;
-  /** The same of the state after the plan: 1/rad², s/rad² and s²/rad². Default: zeros. */
+  /** The same of the state after the plan: 1/rad², s/rad² and s²/rad². Default 0. */
   qf: Matrix;
-  /** Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s. Default: [0, 0]. */
+  /**
+   * Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s: of x² where it is
+   * small. Default 0.
+   */
   angles: readonly [number, number];
-  /** Of the squared difference of the torque from that of the target. Default: 0.1 / (T u²). */
+  /**
+   * R: of the square of the torque's difference from that which holds the target, 1/((N m)² s).
+   * Default 0.1 / (T u²).
+   */
   torque: number;
-  /** Of the square of the torque's change from step to step, 1/(N m)². Default: 0. */
+  /** Of the square of the torque's change from one step to the next, 1/(N m)². Default 0. */
   torqueChange: number;
-  /** Of the absolute value of the motor's power, 1/J. Default: 0. */
+  /** Of the absolute value of the motor's power, 1/J. Default 0. */
   power: number;
-  /** Of the time that the tip is below `height`, 1/s. Default: 0.4 / T. */
+  /** Of the time that the tip is below `height`, 1/s. Default 0.4 / T. */
   below: number;
-  /** Height of the tip above the fixed joint, m. Default: that of the target's tip. */
+  /**
+   * The height of the tip above the fixed joint, m, from which on `below` costs nothing. Default
+   * that of the target.
+   */
   height: number;
-  /** `below` costs half so far below `height`, m; above 0. Default: a tenth of the length. */
+  /**
+   * `below` costs half where the tip is so far below `height`, m; above 0. Default a tenth of both
+   * lengths.
+   */
   margin: number;
-  /** Of the distance at the end from what the regulator holds. Default: 20. */
+  /**
+   * Of ln(1 + e) for the state after the plan, where e is 1 at the border of the region in which
+   * the regulator holds. Default 20.
+   */
   arrival: number;
 }
 
@@ -232,15 +247,34 @@ export class Estimator extends Filter {
   constructor(params: Readonly<Partial<Params>>, noise: Readonly<Noise>);
 }
 
-/** The parameters that can be estimated. */
-export type Estimated =
-  | "mass1" | "mass2" | "length1" | "inertia1" | "inertia2"
-  | "damping1" | "damping2" | "coulomb1" | "coulomb2" | "rotor";
+/** The standard deviations of parameters, each in its unit. Default 0, for one that is known. */
+export interface ParameterStd {
+  /** Of the mass of link 1, kg. */
+  mass1: number;
+  /** Of the mass of link 2, kg. */
+  mass2: number;
+  /** Of the length of link 1, m. */
+  length1: number;
+  /** Of the moment of inertia of link 1, kg m². */
+  inertia1: number;
+  /** Of the moment of inertia of link 2, kg m². */
+  inertia2: number;
+  /** Of the viscous friction of joint 1, N m s/rad. */
+  damping1: number;
+  /** Of the viscous friction of joint 2, N m s/rad. */
+  damping2: number;
+  /** Of the Coulomb friction of joint 1, N m. */
+  coulomb1: number;
+  /** Of the Coulomb friction of joint 2, N m. */
+  coulomb2: number;
+  /** Of the rotor, kg m². */
+  rotor: number;
+}
 
 /** As `Estimator`, and estimates the parameters that have a standard deviation above 0. */
 export class ParameterEstimator extends Filter {
   constructor(
-    params: Readonly<Partial<Params>>, std: Readonly<Partial<Record<Estimated, number>>>,
+    params: Readonly<Partial<Params>>, std: Readonly<Partial<ParameterStd>>,
     noise: Readonly<Noise>,
   );
   /** The estimated parameters, and those that are known. */

@@ -1,8 +1,8 @@
 // Control in a separate module, as control.d.ts describes it.
 
 import {
-  Kept, allFields, call, checkNumber, elements, empty, fields, hold, lengthOf, matrix, pack,
-  paramsOf, readChanges, unpack,
+  Kept, call, checkNumber, elements, empty, fields, hold, lengthOf, matrix, pack, paramsOf, readAll,
+  readChanges, unpack,
 } from "./kept.js";
 import { SIZES, STRUCTS } from "./layout.js";
 import { checked, invalid, isFinite32, positive, randomSeed, seedWords } from "./wasm.js";
@@ -11,10 +11,10 @@ export { moduleBytes, setModule } from "./wasm.js";
 
 const {
   acrobot_cost_t: COST, acrobot_feedback_t: FEEDBACK, acrobot_forces_t: FORCES,
-  acrobot_knot_t: KNOT, acrobot_linear_model_t: MODEL,
-  acrobot_lqr_t: LQR, acrobot_noise_t: NOISE, acrobot_params_t: PARAMS,
-  acrobot_parameter_std_t: STD, acrobot_problem_t: PROBLEM, acrobot_rates_t: RATES,
-  acrobot_settings_t: SETTINGS, acrobot_state_t: STATE, acrobot_weights_t: WEIGHTS,
+  acrobot_knot_t: KNOT, acrobot_linear_model_t: MODEL, acrobot_lqr_t: LQR, acrobot_noise_t: NOISE,
+  acrobot_params_t: PARAMS, acrobot_parameter_std_t: STD, acrobot_problem_t: PROBLEM,
+  acrobot_rates_t: RATES, acrobot_settings_t: SETTINGS, acrobot_state_t: STATE,
+  acrobot_weights_t: WEIGHTS,
 } = STRUCTS;
 
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
@@ -22,11 +22,7 @@ const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
 /** The words of Gymnasium's parameters with changes. */
 const machine = (changes) => pack(paramsOf("acrobot_task_params", 0), changes, PARAMS);
 
-/** A copy of a state, and its words. */
-function readState(state, what = "state") {
-  const given = allFields(what, state, STATE);
-  return [given, pack(empty(STATE), given, STATE)];
-}
+const readState = (state, what = "state") => readAll(what, state, STATE);
 
 const part = (words, [at, count]) => words.slice(at, at + count);
 const rows = (words, width = 4) =>
@@ -77,7 +73,8 @@ export function linearizeStep(state, torque, params) {
 
 function readModel(what, model) {
   const { a, b } = checked(what, model, Object.keys(MODEL));
-  return pack(empty(MODEL), { a: matrix("a", a), b: elements("b", b, 4) }, MODEL);
+  const given = { a: matrix(`${what}.a`, a), b: elements(`${what}.b`, b, 4) };
+  return pack(empty(MODEL), given, MODEL);
 }
 
 /** A copy of weights, and their words. */
@@ -100,10 +97,9 @@ export function regulator(params, q, r, target = UPRIGHT, torque = 0) {
 }
 
 function solve(name, model, q, r) {
-  const [modelWords, [given, weights], words] = [
-    readModel("model", model), readWeights(q, r), empty(LQR),
-  ];
-  call(given, name, modelWords, weights, words);
+  const [own, [given, weights]] = [readModel("model", model), readWeights(q, r)];
+  const words = empty(LQR);
+  call(given, name, own, weights, words);
   return regulatorOf(words);
 }
 
@@ -116,11 +112,12 @@ export function dlqr(model, q, r) {
 }
 
 export function tvlqr(models, q, r, costToGo) {
-  const count = lengthOf(models) ?? 0;
-  const each = elements("models", models, count, () => true);
+  const each = elements("models", models, undefined, () => true);
+  const count = each.length;
   const words = each.flatMap((model, i) => [...readModel(`models[${i}]`, model)]);
   const [given, weights] = readWeights(q, r);
-  const [cost, gains] = [Float32Array.from(matrix("costToGo", costToGo)), new Float32Array(4 * count)];
+  const cost = Float32Array.from(matrix("costToGo", costToGo));
+  const gains = new Float32Array(4 * count);
   call(given, "acrobot_tvlqr", Float32Array.from(words), weights, cost, gains, count);
   return { gains: rows(gains), costToGo: rows(cost) };
 }
@@ -199,7 +196,8 @@ export class Planner extends Made {
   improve(start, iterations, plan) {
     positive("iterations", iterations);
     const steps = stepsOf(plan);
-    const knots = Float32Array.from(Array.from({ length: steps }, (_, i) => knotOf(plan, i)).flat());
+    const rows = Array.from({ length: steps }, (_, step) => knotOf(plan, step));
+    const knots = Float32Array.from(rows.flat());
     const [at, state] = readState(start);
     const [improved, cost] = [knots.slice(), new Float32Array(1)];
     call(at, "acrobot_planner_improve", this, state, iterations, knots, improved, steps, cost);
@@ -265,11 +263,10 @@ class Filter extends Made {
   #prefix;
 
   constructor(size, prefix, params, std, noise) {
-    const [changes, own] = [readChanges(params), allFields("noise", noise, NOISE)];
+    const [changes, [own, words]] = [readChanges(params), readAll("noise", noise, NOISE)];
+    const deviations = std ? [pack(empty(STD), std, STD)] : [];
     const given = { ...changes, ...std, ...own };
-    const words = [machine(changes), pack(empty(NOISE), own, NOISE)];
-    if (std) words.splice(1, 0, pack(empty(STD), std, STD));
-    super(size, given, `${prefix}_init`, ...words);
+    super(size, given, `${prefix}_init`, machine(changes), ...deviations, words);
     this.#prefix = prefix;
   }
 
@@ -313,11 +310,9 @@ export class ParameterEstimator extends Filter {
 /** A copy of a recording, and its samples. */
 function readRecording(recording) {
   const { angles, torques } = checked("recording", recording, ["angles", "torques"]);
-  const count = lengthOf(torques) ?? 0;
-  const given = {
-    angles: elements("recording.angles", angles, 2 * count),
-    torques: elements("recording.torques", torques, count),
-  };
+  const given = { torques: elements("recording.torques", torques) };
+  const count = given.torques.length;
+  given.angles = elements("recording.angles", angles, 2 * count);
   const samples = given.torques.flatMap((torque, i) => [
     given.angles[2 * i], given.angles[2 * i + 1], 0, torque,
   ]);

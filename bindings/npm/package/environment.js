@@ -1,12 +1,11 @@
 // What acrobots and batches share.
 
 import { call, elements, indexOf, readChanges } from "./kept.js";
-import { STRUCTS } from "./layout.js";
+import { STRUCTS, TASKS } from "./layout.js";
 import { checked, invalid, positive, randomSeed, seedWords } from "./wasm.js";
 
 const { acrobot_draw_t: DRAW, acrobot_params_t: PARAMS } = STRUCTS;
 
-export const TASKS = ["gymnasium", "swingup", "balance"];
 /** The kinds of draws in the order of acrobot.h, with the fields of their numbers. */
 const DRAWS = {
   fixed: [],

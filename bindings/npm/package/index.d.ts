@@ -38,49 +38,70 @@ export interface State {
  * default.
  */
 export interface Params {
-  /** Length of link 1, m; above 0. Default: 1. */
+  /** Length of link 1, m; above 0. Default 1. */
   length1: number;
-  /** Length of link 2, which changes only the tip's height and pictures, m; above 0. Default: 1. */
+  /** Length of link 2, m; above 0. Only the tip's height and drawings depend on it. Default 1. */
   length2: number;
-  /** Mass of link 1, kg; above 0. Default: 1. */
+  /** Mass of link 1, kg; above 0. Default 1. */
   mass1: number;
-  /** Mass of link 2, kg; above 0. Default: 1. */
+  /** Mass of link 2, kg; above 0. Default 1. */
   mass2: number;
-  /** Distance of link 1's centre of mass from its joint, m; 0 or more. Default: 0.5. */
+  /** Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5. */
   centerOfMass1: number;
-  /** Distance of link 2's centre of mass from its joint, m; 0 or more. Default: 0.5. */
+  /** Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5. */
   centerOfMass2: number;
-  /** Inertia of link 1 about its centre of mass, kg m²; 0 or more. Default: 1. */
+  /**
+   * Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
+   * centre of mass is on the joint. Default 1.
+   */
   inertia1: number;
-  /** Inertia of link 2 about its centre of mass, kg m²; 0 or more. Default: 1. */
+  /** Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`. Default 1. */
   inertia2: number;
-  /** Acceleration of gravity, downwards, m/s²; finite. Default: 9.8. */
+  /** Acceleration of gravity, m/s², downwards; finite, 0 for none. Default 9.8. */
   gravity: number;
-  /** Duration of a step, s; above 0. Default: 0.2. */
+  /** Duration of one step, s; above 0. Default 0.2. */
   dt: number;
   /**
-   * Bound of |dtheta1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as
-   * 3.4e38, the largest number in single precision. Default: 4π.
+   * Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as 3.4e38,
+   * the largest number in single precision, which observations have. Default 4 π.
    */
   maxVelocity1: number;
-  /** Bound of |dtheta2| after a step, rad/s; as `maxVelocity1`. Default: 9π. */
+  /** Bound of |θ̇2| after a step, rad/s; as `maxVelocity1`. Default 9 π. */
   maxVelocity2: number;
-  /** Torques of the three actions, counter-clockwise, N m; finite. Default: [-1, 0, 1]. */
+  /**
+   * Torques of the three actions, N m, in the order of their numbers; finite. Default [−1, 0, 1].
+   */
   torques: readonly [number, number, number];
-  /** Bound of a uniform draw that each step adds to its torque, N m; 0 or more. Default: 0. */
+  /**
+   * Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the torque;
+   * 0 draws nothing. Default 0.
+   */
   torqueNoise: number;
-  /** Equations of the book or of the NIPS paper: Gymnasium's `book_or_nips`. Default: "book". */
-  dynamics: "book" | "nips";
-  /** Viscous friction of the fixed joint, N m s/rad; 0 or more. */
+  /**
+   * Viscous friction of the fixed joint, which resists θ̇1 with a torque in proportion to it,
+   * N m s/rad; 0 or more. Default 0.
+   */
   damping1: number;
-  /** Viscous friction between the links, N m s/rad; 0 or more. */
+  /** Viscous friction of the elbow, which resists θ̇2; as `damping1`. Default 0. */
   damping2: number;
-  /** Coulomb friction of the fixed joint, N m; 0 or more. */
+  /**
+   * Coulomb friction of the fixed joint: its torque as soon as the joint turns, N m; 0 or more.
+   * Default 0.
+   */
   coulomb1: number;
-  /** Coulomb friction between the links, N m; 0 or more. */
+  /** Coulomb friction of the elbow; as `coulomb1`. Default 0. */
   coulomb2: number;
-  /** What a geared rotor takes from the links' coupling, kg m²; finite. */
+  /**
+   * What a geared rotor in the elbow takes from the coupling of the links, kg m²; finite, and so
+   * small that the mass matrix is positive definite. A rotor of moment of inertia J behind a gear g
+   * adds (g + 1)² J to `inertia1`, g² J to `inertia2`, and (g + 1) g J here. Default 0.
+   */
   rotor: number;
+  /**
+   * The equations of motion: of Sutton and Barto's book, or of the paper of 1996 (NIPS 8). Default
+   * "book".
+   */
+  dynamics: "book" | "nips";
 }
 
 /**
@@ -100,12 +121,19 @@ export type Draws = {
   readonly [Name in Exclude<keyof Params, "torques" | "dynamics">]?: Draw;
 } & { readonly torques?: readonly [Draw, Draw, Draw] };
 
+// derive.py writes the tasks.
 /**
- * "gymnasium", or a task that no state ends, with rewards from 0 to 1 and other parameters:
- * "swingup", dm_control's `acrobot-swingup`, from rest anywhere to upright in 1000 steps, or
- * "balance", to stay upright for 500, with the reward (2 − cos θ1 − cos(θ1 + θ2)) / 4.
+ * A task, by its name:
+ *
+ * - "gymnasium": Gymnasium's `Acrobot-v1`: swing the tip above a height within 500 steps of 0.2 s.
+ * - "swingup": dm_control's `acrobot-swingup`, with friction: from rest anywhere to upright within
+ *   1,000 steps of 0.01 s. The reward is from 0 to 1. The observation has the sines of both links'
+ *   angles from upright, their cosines, and the velocities.
+ * - "balance": Stay upright for 500 steps of 0.02 s with a motor of 10 N m, from within ±0.05 of
+ *   upright. The reward is 1 upright and 0 hanging.
  */
 export type Task = "gymnasium" | "swingup" | "balance";
+// The end of the tasks.
 
 export interface Options {
   /** The seed of the first initial state and all later random numbers. Default: random. */

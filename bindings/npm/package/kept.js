@@ -5,7 +5,7 @@ import {
   Opaque, camelCase, checked, decoded, instantiate, invalid, invalidSingle, isNumber, seedWords,
 } from "./wasm.js";
 
-const { acrobot_error_t: ERROR, acrobot_params_t: PARAMS, acrobot_state_t: STATE } = STRUCTS;
+const { acrobot_error_t: ERROR, acrobot_params_t: PARAMS } = STRUCTS;
 const DYNAMICS = ["book", "nips"];
 
 // Bundlers to CommonJS do not rename a variable `exports`.
@@ -41,6 +41,7 @@ export function scratch() {
     views.numbers = new Float32Array(buffer, result, (REST - RESULT) / 4);
     views.integers = new Uint32Array(buffer, result, (REST - RESULT) / 4);
     views.flags = new Uint8Array(buffer, result, REST - RESULT);
+    views.bytes = new Uint8Array(buffer, views.address, SIZE);
   }
   return views;
 }
@@ -81,7 +82,7 @@ const DAMAGES = {
   [STATUS.damagedSnapshot]: "another checksum",
   [STATUS.otherSnapshot]: "another class or version, or invalid contents",
 };
-const ERROR_SIZE = 144;
+const ERROR_SIZE = padded(4 * (ERROR.rule[0] + ERROR.rule[1]));
 /** JavaScript's names of arguments that have others in Rust. */
 const NAMES = { "the largest torque": "limit" };
 
@@ -96,7 +97,8 @@ function rejection(status, at, given) {
   }
   if (status !== STATUS.outOfRange) return new Error(text(wasm().acrobot_status_text(status)));
   const { buffer } = wasm().memory;
-  const [[value], [kind]] = [new Float64Array(buffer, at, 1), new Int32Array(buffer, at + 8, 1)];
+  const [value] = new Float64Array(buffer, at + 4 * ERROR.value[0], 1);
+  const [kind] = new Int32Array(buffer, at + 4 * ERROR.kind[0], 1);
   const [name, rule] = [ERROR.name, ERROR.rule].map(([word]) => text(at + 4 * word));
   if (kind === KINDS.noPlan) return undefined;
   if (kind === KINDS.notStabilizable || kind === KINDS.notDetectable) {
@@ -117,28 +119,23 @@ function rejection(status, at, given) {
 export function call(given, name, ...args) {
   const run = wasm()[name];
   const values = args.map((arg) => (arg instanceof Kept ? addressOf(arg) : arg));
-  const arrays = values.filter(ArrayBuffer.isView);
-  const sizes = arrays.map(({ byteLength }) => padded(byteLength));
-  const size = sizes.reduce((sum, each) => sum + each, REST + ERROR_SIZE);
+  const copies = values.map((value) => ArrayBuffer.isView(value) && bytesOf(value));
+  const size = copies.reduce((sum, { length = 0 }) => sum + padded(length), REST + ERROR_SIZE);
   const own = size > SIZE ? allocate(size, "arguments", 1) : 0;
-  const error = (own || scratch().address) + REST;
-  let next = error + ERROR_SIZE;
-  const places = new Map();
-  arrays.forEach((array, i) => {
-    places.set(array, next);
-    bytesAt(next, array.byteLength).set(bytesOf(array));
-    next += sizes[i];
-  });
-  const addresses = values.map((value) => places.get(value) ?? value);
+  const { address, bytes } = own ? { address: own, bytes: bytesAt(own, size) } : scratch();
+  let next = REST + ERROR_SIZE;
+  const places = copies.map(({ length = 0 }) => (next += padded(length)) - padded(length));
+  copies.forEach((copy, i) => copy && bytes.set(copy, places[i]));
+  const addresses = values.map((value, i) => (copies[i] ? address + places[i] : value));
   // The error is the last argument of the functions that have one.
+  const error = address + REST;
   const status = run(...addresses, ...(run.length > args.length ? [error] : []));
-  for (const [array, at] of places) bytesOf(array).set(bytesAt(at, array.byteLength));
+  copies.forEach((copy, i) => copy && copy.set(bytes.subarray(places[i], places[i] + copy.length)));
   const reason = status === 0 ? null : rejection(status, error, given);
   if (own) wasm().acrobot_memory_free(own, size);
   if (reason) throw reason;
   return reason === null;
 }
-
 
 export function checkNumber(name, value) {
   if (!isNumber(value)) throw invalid(`${name} must be a number`, value);
@@ -161,13 +158,16 @@ export function lengthOf(array) {
 }
 
 /** A copy of an array whose elements are valid. They are not converted: 258 and "2" are not 2. */
-export function elements(what, array, count, isValid = isNumber, rule = "must be a number") {
+export function elements(
+  what, array, count = lengthOf(array), isValid = isNumber, rule = "must be a number",
+) {
   const length = lengthOf(array);
   if (length === undefined) {
-    throw invalid(`${what} must be an array of ${count} elements`, array, []);
+    const size = count === undefined ? "" : ` of ${count} elements`;
+    throw invalid(`${what} must be an array${size}`, array, []);
   }
   if (length !== count) throw invalid(`${what} must have ${count} elements`, length);
-  const copy = Array.from({ length: count }, (_, i) => array[i]);
+  const copy = Array.from({ length }, (_, i) => array[i]);
   const wrong = copy.findIndex((element) => !isValid(element));
   if (wrong >= 0) throw invalidSingle(`${what}[${wrong}] ${rule}`, copy[wrong]);
   return copy;
@@ -189,11 +189,12 @@ export function fields(what, object, struct) {
   return given;
 }
 
-/** As `fields`, with all of them. */
-export function allFields(what, object, struct) {
-  const given = fields(what, object, struct);
-  for (const name of Object.keys(struct)) checkNumber(name, given[name]);
-  return given;
+/** A copy of an object with all numbers of a struct, and its words. */
+export function readAll(what, object, struct) {
+  const names = Object.keys(struct);
+  const given = checked(what, object, names);
+  for (const name of names) checkNumber(name, given[name]);
+  return [given, Float32Array.from(names, (name) => given[name])];
 }
 
 /** Writes fields at their places. Returns the words. */
@@ -216,7 +217,10 @@ export function unpack(words, struct) {
 }
 
 /** The words of a struct of zeros. */
-export const empty = (struct) => new Float32Array(Object.values(struct).flat().slice(-2).reduce((a, b) => a + b));
+export function empty(struct) {
+  const [[at, count]] = Object.values(struct).slice(-1);
+  return new Float32Array(at + count);
+}
 
 export const readChanges = (changes) => fields("params", changes, PARAMS);
 

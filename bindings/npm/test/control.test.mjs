@@ -5,7 +5,9 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import {
-  Planner, SwingUp, linearize, linearizeStep, planTorque, regulator,
+  Controller, Estimator, ParameterEstimator, Planner, Replanner, SwingUp, derivative, deviationFrom,
+  dlqr, identify, inverseDynamics, linearize, linearizeStep, lqr, massMatrix, planTorque,
+  predictionError, regulator, tvlqr,
 } from "../dist/control.js";
 import { Acrobot } from "../dist/index.js";
 import { assertRejected } from "./module.mjs";
@@ -59,22 +61,113 @@ test("a plan is improved in place for other weights and another start", () => {
   assert.ok(costs[0] > costs[1] && costs[1] >= costs[2], costs.join());
   assert.ok(jumps(plan) < before / 2);
   assert.equal(plan.states[0], Math.fround(0.05));
+  assert.ok(smooth.holdsFrom(UPRIGHT) && !smooth.withVelocityClamp().holdsFrom(HANGING));
+  // A rejected plan is as before.
+  const copy = structuredClone(plan);
+  assert.throws(() => smooth.improve(state(0, 0, 3e38), 2, plan), /must be finite in each element/);
+  assert.deepEqual(plan, copy);
 });
 
-test("linear models are derivatives of a step and of the motion", () => {
-  const [at, params] = [state(0.4, -0.3, 1, 2), { dt: 0.05, dynamics: "nips" }];
+const near = (one, other, most) => assert.ok(Math.abs(one - other) < most, `${one}, ${other}`);
+
+test("models agree with a step and with each other", () => {
+  const [at, params] = [state(0.4, -0.3, 1, 2), { dt: 0.05, dynamics: "nips", coulomb1: 0.1 }];
   const acrobot = new Acrobot({ params });
-  const after = (dtheta1, torque) => {
-    acrobot.state = { ...at, dtheta1 };
-    acrobot.stepTorque(torque);
-    return acrobot.state.theta2;
-  };
-  const { a, b } = linearizeStep(at, 0.5, params);
-  assert.ok(Math.abs((after(1.1, 0.5) - after(0.9, 0.5)) / 0.2 - a[1][2]) < 1e-4);
-  assert.ok(Math.abs((after(1, 1.5) - after(1, -0.5)) / 2 - b[1]) < 1e-4);
+  acrobot.state = at;
+  acrobot.stepTorque(0.5);
+  const { b } = linearizeStep(at, 0.5, params);
+  const { ddtheta1, ddtheta2, dtheta2 } = derivative(at, 0.5, params);
+  near(deviationFrom(acrobot.state, at).dtheta2 / 0.05, ddtheta2, 0.3);
+  assert.equal(dtheta2, 2);
   const rates = linearize(at, 0.5, params);
   assert.deepEqual([...rates.a[1], rates.b[1]], [0, 0, 0, 1, 0]);
-  assert.ok(Math.abs(b[3] / 0.05 - rates.b[3]) < 0.05);
+  near(b[3] / 0.05, rates.b[3], 0.05);
+  // Accelerations by the torque are the second column of the inverse of M.
+  const [[m11, m12], [, m22]] = massMatrix(at, { ...params, dynamics: "book" });
+  near(linearize(at, 0.5, {}).b[3], m11 / (m11 * m22 - m12 ** 2), 1e-5);
+  const { torques, reaction, elbow } = inverseDynamics(at, ddtheta1, ddtheta2, params);
+  near(torques[0], 0, 1e-5);
+  near(torques[1], 0.5, 1e-5);
+  assert.deepEqual([reaction, elbow].map(({ length }) => length), [2, 2]);
+});
+
+test("regulators of models are those of machines", () => {
+  const step = linearizeStep(UPRIGHT, 0, PARAMS);
+  const one = regulator(PARAMS, EYE, 1);
+  assert.deepEqual(dlqr(step, EYE, 1), one);
+  const { gains, costToGo } = tvlqr([step, step], EYE, 1, one.costToGo);
+  assert.equal(gains.length, 2);
+  gains[0].forEach((gain, i) => near(gain / one.gain[i], 1, 1e-3));
+  near(costToGo[2][1] / one.costToGo[2][1], 1, 1e-3);
+  // Hanging, the acrobot needs less.
+  assert.ok(Math.abs(one.gain[0]) > 10 * Math.abs(regulator(PARAMS, EYE, 1, HANGING).gain[0]));
+  // In 10 ms decisions change little.
+  const { gain } = lqr(linearize(UPRIGHT, 0, PARAMS), EYE, 1);
+  gain.forEach((each, i) => near(each / one.gain[i], 1, 0.1));
+});
+
+/** The angles of an acrobot without jumps, and its torques, which a motor varies. */
+function record(params, steps, each = () => {}) {
+  const acrobot = new Acrobot({ seed: 1, params });
+  const [angles, torques] = [[], []];
+  for (let i = 0; i < steps; i++) {
+    const { theta1, theta2 } = acrobot.state;
+    const torque = Math.sin(i / 30) + Math.cos(i / 47);
+    [theta1, theta2].forEach((angle, joint) => {
+      const turns = Math.round(((angles[angles.length - 2] ?? angle) - angle) / (2 * Math.PI));
+      angles.push(angle + 2 * Math.PI * turns);
+    });
+    torques.push(torque);
+    each(theta1, theta2, torque);
+    acrobot.stepTorque(torque);
+  }
+  return [{ angles, torques }, acrobot];
+}
+
+test("estimators follow angles, and recordings have parameters", () => {
+  const noise = { angleStd: 0.001, torqueStd: 0.01 };
+  const estimator = new Estimator({ ...PARAMS, mass2: 1.1 }, noise);
+  const parameters = new ParameterEstimator(PARAMS, { mass2: 0.1 }, noise);
+  assert.equal(estimator.stateStd.dtheta2, Infinity);
+  const [recording, acrobot] = record({ ...PARAMS, mass2: 1.1 }, 3000, (theta1, theta2, torque) => {
+    for (const each of [estimator, parameters]) {
+      each.correct(theta1, theta2);
+      each.predict(torque);
+    }
+  });
+  for (const { state, stateStd } of [estimator, parameters]) {
+    near(state.dtheta2, acrobot.state.dtheta2, 0.01);
+    assert.ok(stateStd.dtheta2 < 0.01);
+  }
+  near(parameters.params.mass2, 1.1, 0.001);
+  const identified = identify(recording, PARAMS);
+  near(identified.mass2, 1.1, 0.002);
+  const [fit, wrong] = [identified, PARAMS].map((each) => predictionError(each, recording, 20));
+  assert.ok(fit < wrong / 9, `${fit}, ${wrong}`);
+});
+
+test("a controller and a replanner swing a machine with encoders up", () => {
+  // RealAIGym's acrobot, whose motor has 6 N m.
+  const links = { length1: 0.2, length2: 0.3, mass1: 0.523, mass2: 0.626 };
+  const centers = { centerOfMass1: 0.2, centerOfMass2: 0.256, inertia1: 0.011, inertia2: 0.0099 };
+  const bounds = { maxVelocity1: Infinity, maxVelocity2: Infinity };
+  const params = { ...links, ...centers, ...bounds, dt: 0.002 };
+  const settings = { params, limit: 6, counts: [4096, 4096], ticks: 5 };
+  const [controller, replanner] = [new Controller(settings), new Replanner(settings)];
+  const machine = new Acrobot({ params });
+  machine.state = state(0.05);
+  for (let tick = 0; tick < 4000; tick++) {
+    const { theta1, theta2 } = machine.state;
+    const counts = [theta1, theta2].map((angle) => Math.round((angle / 2 / Math.PI) * 4096));
+    machine.stepTorque(controller.tick(...counts));
+    if (tick % 10) continue;
+    replanner.exchange(controller);
+    replanner.work();
+  }
+  near(deviationFrom(machine.state, UPRIGHT).theta1, 0, 0.1);
+  near(controller.state.theta2, machine.state.theta2, 0.01);
+  near(controller.params.mass2, 0.626, 0.1);
+  assert.equal(controller.params.maxVelocity1, 3.4028234663852886e38);
 });
 
 test("without a plan, the torque pumps energy and then holds", () => {
@@ -85,35 +178,12 @@ test("without a plan, the torque pumps energy and then holds", () => {
   assert.equal(new Planner(PARAMS, 7).plan(HANGING, { steps: 10, tries: 3 }), null);
 });
 
-test("a regulator has the gain with which a planner holds, in both tasks", () => {
-  for (const task of ["gymnasium", "swingup"]) {
-    const { params } = new Acrobot({ task, params: { dt: 0.02, mass2: 1.5 } });
-    // The planner's weights are 1 in the units of the machine: its torque, and a time T.
-    const [limit, { mass1, mass2 }] = [2, params];
-    const [lever, reach] = [params.centerOfMass1, params.length1 + params.centerOfMass2];
-    const inertia =
-      params.inertia1 + mass1 * lever ** 2 + params.inertia2 + mass2 * reach ** 2;
-    const square = inertia / ((mass1 * lever + mass2 * reach) * params.gravity + limit);
-    const q = EYE.map((row, i) => row.map((x) => (i < 2 ? x : x * square)));
-    const { gain, costToGo } = regulator(params, q, 1 / limit ** 2);
-    assert.equal(costToGo[1][2], costToGo[2][1]);
-    const { after } = new Planner(params, limit).plan(UPRIGHT, { steps: 20, seed: 1 });
-    const none = { states: [], torques: [], gains: [], after };
-    Object.entries(UPRIGHT).forEach(([name, value], i) => {
-      const torque = planTorque(none, 0, { ...UPRIGHT, [name]: value + 0.25 });
-      assert.ok(Math.abs(torque + 0.25 * gain[i]) < 1e-3, `${torque} and ${gain}`);
-    });
-  }
-  // Hanging, the acrobot needs less.
-  const [up, down] = [UPRIGHT, HANGING].map((each) => regulator(PARAMS, EYE, 1, each).gain);
-  assert.ok(Math.abs(up[0]) > 10 * Math.abs(down[0]));
-});
-
 test("invalid arguments are rejected with Rust's messages", () => {
   const [planner, plan] = planned();
   const make = (limit, cost) => () => new Planner(PARAMS, limit, cost);
   const hold = (q, r = 1, at = UPRIGHT, params = PARAMS) => () => regulator(params, q, r, at);
   const first = (...row) => [row, ...EYE.slice(1)];
+  const settings = { params: PARAMS, limit: 6, counts: [4096, 4096], ticks: 5 };
   assertRejected([
     ["RangeError", "dt must be finite and above 0 s", ["-1", hold(EYE, 1, UPRIGHT, { dt: -1 })]],
     ["RangeError", "r must be finite and above 0 per (N m)²", ["-0.1", hold(EYE, -0.1)]],
@@ -143,6 +213,20 @@ test("invalid arguments are rejected with Rust's messages", () => {
       ["NaN", () => planTorque(plan, 0, state(0, NaN))],
       ["1e+39, which is Infinity in single precision",
         () => planTorque(plan, plan.torques.length, state(0, 1e39))]],
+    ["RangeError", "angleStd must be above 0 and at most 2 rad",
+      ["3", () => new Estimator(PARAMS, { angleStd: 3, torqueStd: 1 })]],
+    ["TypeError", "torqueStd must be a number",
+      ["undefined", () => new Estimator(PARAMS, { angleStd: 1 })]],
+    ["RangeError", "recording.angles must have 2 elements",
+      ["1", () => identify({ angles: [1], torques: [1] }, PARAMS)]],
+    ["RangeError", "angles must be finite in each element",
+      ["NaN", () => identify({ angles: [1, NaN], torques: [1] }, PARAMS)]],
+    ["RangeError", "counts must be finite and above 0 for a turn",
+      ["-4096", () => new Controller({ ...settings, counts: [4096, -4096] })]],
+    ["RangeError", "count2 must be an integer of 32 bits",
+      ["1.5", () => new Controller(settings).tick(1, 1.5)]],
+    ["TypeError", "controller must be a Controller",
+      ["[object Planner]", () => new Replanner(settings).exchange(planner)]],
   ]);
   const rejects = (call, message) => assert.throws(call, { name: "RangeError", message });
   const [one, two] = [-0.1, [-0.1, -0.2]];

@@ -3,7 +3,9 @@
 
 import { Acrobot, Batch, moduleBytes, setModule } from "acrobot-rs";
 import type { Action, BatchStep, Context, Options, Params, State, Step, Task } from "acrobot-rs";
-import { Planner, SwingUp, planTorque, regulator } from "acrobot-rs/control";
+import {
+  Controller, ParameterEstimator, Planner, Replanner, SwingUp, dlqr, linearizeStep, planTorque,
+} from "acrobot-rs/control";
 import type { Plan } from "acrobot-rs/control";
 import { Learner, energyLaw } from "acrobot-rs/policies";
 
@@ -30,7 +32,13 @@ using planner = new Planner(params, 2, { torqueChange: 1, angles: [0.1, 0] });
 const plan: Plan | null = planner.plan(state, { steps: 500, seed: 7n });
 const torque: number = plan ? planTorque(plan, 0, state) : new SwingUp(params, 2).torque(state);
 const eye = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
-const gain: Float32Array = regulator({ dt: 0.05 }, eye, 1).gain;
+const gain: Float32Array = dlqr(linearizeStep(state, 0, { dt: 0.05 }), eye, 1).gain;
+const noise = { angleStd: 0.001, torqueStd: 0.01 };
+using estimator = new ParameterEstimator(params, { mass2: 0.1 }, noise);
+const estimated: Readonly<State> = estimator.state;
+const settings = { params, limit: 6, counts: [4096, 4096], ticks: 5 } as const;
+const controller = new Controller(settings);
+new Replanner(settings).exchange(controller);
 
 setModule(new WebAssembly.Module(Uint8Array.from(moduleBytes())));
 
@@ -55,4 +63,4 @@ new Batch({ seed: 1 });
 // @ts-expect-error
 planTorque(planner.plan(state, { steps: 500 }), 0, state);
 
-export { actions, finals, gain, mode, step, task, torque };
+export { actions, estimated, finals, gain, mode, step, task, torque };

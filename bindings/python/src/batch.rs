@@ -12,10 +12,9 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::engine::{Engine, Inputs, out_of_memory, with_batch};
+use crate::engine::{Engine, Inputs, with_batch};
 use crate::pool::Pool;
-use crate::task::AnyTask;
-use crate::{alone, check_states, load, places, rejected, render, save};
+use crate::{alone, check_states, load, places, rejected, render, save, task, wrong};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
@@ -30,25 +29,32 @@ pub struct Batch {
 impl Batch {
     #[new]
     #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed=None, max_episode_steps=NonZeroU32::MAX,
-        mode="NextStep", kind=("gymnasium", "float32"), continuous=false, threads=NonZeroU32::MIN))]
+        autoreset_mode="NextStep", kind=("gymnasium", "float32"), continuous=false,
+        threads=NonZeroU32::MIN))]
     fn new(
         num_envs: NonZeroU32,
         seed: Option<Bound<'_, PyAny>>,
         max_episode_steps: NonZeroU32,
-        mode: &str,
+        autoreset_mode: &str,
         kind: (&str, &str),
         continuous: bool,
         threads: NonZeroU32,
     ) -> PyResult<Self> {
-        let mode = match mode {
+        let mode = match autoreset_mode {
             "NextStep" => Autoreset::NextStep,
             "SameStep" => Autoreset::SameStep,
-            _ => Autoreset::Disabled,
+            "Disabled" => Autoreset::Disabled,
+            _ => {
+                return Err(wrong(
+                    "autoreset_mode",
+                    "NextStep, SameStep or Disabled",
+                    autoreset_mode,
+                ));
+            }
         };
-        let ((task, arithmetic), len) = (kind, num_envs.get() as usize);
+        let ((name, arithmetic), len) = (kind, num_envs.get() as usize);
         let seed = seed.map_or(Ok(SeedSequence::new(0)), parse)?;
-        let engine = Engine::new(arithmetic, AnyTask::named(task), len, seed);
-        let mut engine = engine.map_err(out_of_memory)?;
+        let mut engine = Engine::new(arithmetic, task(name)?, len, seed)?;
         with_batch!(&mut engine, many => {
             many.batch.set_max_steps(max_episode_steps);
             many.batch.set_autoreset(mode);
@@ -249,6 +255,6 @@ impl Batch {
 }
 
 /// A seed, an integer of at least 0.
-fn parse(seed: Bound<'_, PyAny>) -> PyResult<SeedSequence> {
+pub fn parse(seed: Bound<'_, PyAny>) -> PyResult<SeedSequence> {
     seed.str()?.to_str()?.parse::<SeedSequence>().map_err(rejected)
 }

@@ -1,41 +1,50 @@
 //! What `acrobot_rs.control` computes: functions, each for many states at once, and plans.
 
-use acrobot::arithmetic::Damped;
+use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::control;
 use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
 use acrobot::control::identify::{Fit, Sample};
 use acrobot::control::model::{LinearModel, StepModel};
 use acrobot::control::plan::{self, Cost, Knot, Plan, Problem};
-use acrobot::control::regulator::{self, Feedback, Lqr, dlqr, lqr};
+use acrobot::control::regulator::{self, Feedback, Lqr, dlqr, lqr, tvlqr};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::{Error, Fast, Portable, State};
 use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
+use crate::batch::parse;
 use crate::single::{Acrobot, One};
-use crate::{NAMES, Params, invalid, rejected};
+use crate::{NAMES, Params, alone, held, invalid, load, named, place_of, rejected, save, wrong};
 
 /// Applies a function to each row of inputs. Returns the results of all rows.
 #[pyfunction]
 pub fn compute<'py>(
     function: &str,
-    acrobot: PyRef<'py, Acrobot>,
+    acrobot: &Bound<'py, Acrobot>,
     rows: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let (py, one) = (acrobot.py(), acrobot.acrobot.clone());
-    drop(acrobot); // other threads may step it
+    let (py, one) = (acrobot.py(), alone(acrobot)?.acrobot.clone());
     let rows = rows.as_slice()?.chunks_exact(rows.shape()[1]);
     let results: PyResult<_> = py.detach(|| {
         let mut results = Vec::new();
         for row in rows {
             results.extend(match function {
                 "simulate" => simulate(one.clone(), row)?,
-                _ => results_of(function, one.params(), row).map_err(rejected)?,
+                _ => {
+                    results_of(function, one.params(), row).map_err(|error| match error.name() {
+                        "q" => named(error, "Q"), // as in python-control
+                        "r" => named(error, "R"),
+                        _ => rejected(error),
+                    })?
+                }
             });
         }
-        Ok(results)
+        let rule = format_args!("so small that {function} is finite");
+        let infinite = results.iter().find(|x| !f64::is_finite(**x));
+        infinite.map_or(Ok(()), |x| Err(wrong("the numbers", rule, x))).map(|()| results)
     });
     Ok(PyArray1::from_vec(py, results?))
 }
@@ -87,6 +96,16 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, E
         ("regulator", &[state, q1, q2, q3, q4], &[torque, r]) => {
             of_regulator(at(state)?.regulator(torque, &[q1, q2, q3, q4], r)?)
         }
+        ("tvlqr", vectors, &[r]) if let Some((models, last)) = vectors.split_last_chunk() => {
+            let [q1, q2, q3, q4, qf1, qf2, qf3, qf4] = *last;
+            let (a, b) = models.split_at(models.len() / 5 * 4);
+            let models = a.as_chunks().0.iter().zip(b).map(|(&a, &b)| StepModel { a, b });
+            let models: Vec<_> = models.collect();
+            let mut gains = vec![[0.0; 4]; models.len()];
+            let (q, qf) = ([q1, q2, q3, q4], [qf1, qf2, qf3, qf4]);
+            let cost_to_go = tvlqr(&models, &q, r, &qf, &mut gains)?;
+            [cost_to_go.concat(), gains.concat()].concat()
+        }
         _ => Vec::new(),
     })
 }
@@ -99,80 +118,116 @@ type Row = [f32; 9];
 
 type Matrix = [[f32; 4]; 4];
 
-/// The weights of a cost, by their names in Rust. `None` for the default.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-struct Weights {
-    q: Option<Matrix>,
-    qf: Option<Matrix>,
-    angles: Option<[f32; 2]>,
-    torque: Option<f32>,
-    torque_change: Option<f32>,
-    power: Option<f32>,
-    below: Option<f32>,
-    height: Option<f32>,
-    margin: Option<f32>,
-    arrival: Option<f32>,
+/// Replaces weights, in their order, by those that are given.
+fn weigh<S: Real>(cost: &mut Cost<S>, given: &[Option<f64>]) {
+    let Cost { q, qf, angles, torque, torque_change, power, below, height, margin, arrival } = cost;
+    let numbers = [torque, torque_change, power, below, height, margin, arrival];
+    let matrices = [q, qf].into_iter().flat_map(|rows| rows.as_flattened_mut());
+    for (weight, given) in matrices.chain(angles).chain(numbers).zip(given) {
+        *weight = given.map_or(*weight, S::from_f64);
+    }
+}
+
+/// The parameters of an acrobot, if `f32` holds them.
+fn machine(acrobot: &Bound<'_, Acrobot>) -> PyResult<Params> {
+    let params = alone(acrobot)?.acrobot.params();
+    let mut numbers = NAMES.into_iter().zip(params.numbers());
+    numbers.try_for_each(|(name, (_, number))| held::<f32>(name, number).map(drop))?;
+    Ok(params)
+}
+
+/// A result in `f32`. Its error is that of `f64`, if there is one, which shows the numbers before
+/// they are rounded.
+fn narrow<T, U>(
+    narrow: impl FnOnce() -> Result<T, Error>,
+    wide: impl FnOnce() -> Result<U, Error>,
+) -> PyResult<T> {
+    narrow().map_err(|error| {
+        let error = wide().err().unwrap_or(error);
+        match error.name() {
+            "the largest torque" => named(error, "max_torque"),
+            "the largest torque minus the target's" => {
+                named(error, "max_torque minus the target's")
+            }
+            _ => invalid(error, None),
+        }
+    })
+}
+
+fn planner<A: Arithmetic>(
+    params: Params,
+    [max_torque, elbow]: [f64; 2],
+    weights: &[Option<f64>],
+) -> Result<plan::Planner<A>, Error> {
+    let number = A::Scalar::from_f64;
+    let mut problem = Problem::balance::<A>(params.cast(), number(max_torque), number(elbow))?;
+    weigh(&mut problem.cost, weights);
+    plan::Planner::new(&problem)
 }
 
 /// Plans motions to an equilibrium.
 #[pyclass(module = "acrobot_rs._native")]
-pub struct Planner(plan::Planner<Damped<Fast>>);
+pub struct Planner {
+    planner: plan::Planner<Damped<Fast>>,
+    arguments: Py<PyTuple>,
+}
 
 #[pymethods]
 impl Planner {
     #[new]
     fn new(
-        acrobot: PyRef<'_, Acrobot>,
-        max_torque: f32,
-        elbow: f32,
+        acrobot: &Bound<'_, Acrobot>,
+        max_torque: f64,
+        elbow: f64,
         velocity_clamp: bool,
-        weights: Weights,
+        weights: Vec<Option<f64>>,
     ) -> PyResult<Self> {
-        let params = acrobot.acrobot.params().cast();
-        let mut problem =
-            Problem::balance::<Damped<Fast>>(params, max_torque, elbow).map_err(rejected)?;
-        let own = problem.cost;
-        problem.cost = Cost {
-            q: weights.q.unwrap_or(own.q),
-            qf: weights.qf.unwrap_or(own.qf),
-            angles: weights.angles.unwrap_or(own.angles),
-            torque: weights.torque.unwrap_or(own.torque),
-            torque_change: weights.torque_change.unwrap_or(own.torque_change),
-            power: weights.power.unwrap_or(own.power),
-            below: weights.below.unwrap_or(own.below),
-            height: weights.height.unwrap_or(own.height),
-            margin: weights.margin.unwrap_or(own.margin),
-            arrival: weights.arrival.unwrap_or(own.arrival),
-        };
-        let planner = plan::Planner::new(&problem).map_err(rejected)?;
-        Ok(Self(if velocity_clamp { planner.with_velocity_clamp() } else { planner }))
+        let (params, numbers) = (machine(acrobot)?, [max_torque, elbow]);
+        let planner = narrow(
+            || planner::<Damped<Fast>>(params, numbers, &weights),
+            || planner::<Damped<Portable>>(params, numbers, &weights),
+        )?;
+        let planner = if velocity_clamp { planner.with_velocity_clamp() } else { planner };
+        let copy = alone(acrobot)?.clone();
+        let arguments = (copy, max_torque, elbow, velocity_clamp, weights);
+        let arguments = arguments.into_pyobject(acrobot.py())?.unbind();
+        Ok(Self { planner, arguments })
+    }
+
+    /// Every protocol of pickle calls this, and `copy.deepcopy`.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
+        Ok((slf.get_type(), alone(slf)?.arguments.clone_ref(slf.py())))
     }
 
     /// What holds the target after each plan.
-    fn after(&self) -> After {
-        let Feedback { target, torque, moving, resting, reach } = *self.0.regulator().feedback();
+    fn after(slf: &Bound<'_, Self>) -> PyResult<After> {
+        let this = alone(slf)?;
+        let Feedback { target, torque, moving, resting, reach } =
+            *this.planner.regulator().feedback();
         let region = |regulator::Region { gain, factor }| (gain, factor);
-        (target.into(), torque, region(moving), region(resting), reach)
+        Ok((target.into(), torque, region(moving), region(resting), reach))
     }
 
-    fn holds_from(&self, state: [f32; 4]) -> PyResult<bool> {
-        Ok(self.0.regulator().holds_from(valid(state)?))
+    fn holds_from(slf: &Bound<'_, Self>, state: [f32; 4]) -> PyResult<bool> {
+        Ok(alone(slf)?.planner.regulator().holds_from(state.into()))
     }
 
     fn plan(
-        &mut self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         state: [f32; 4],
         steps: u16,
         tries: u32,
-        seed: u64,
+        seed: Bound<'_, PyAny>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Vec<Row>> {
-        let mut rng = Pcg64::new(seed);
+        let (py, mut rng) = (slf.py(), Pcg64::from(parse(seed)?));
         for done in (0..tries).step_by(PORTION as usize) {
             let portion = PORTION.min(tries - done);
-            match py.detach(|| self.0.plan(state.into(), portion, &mut rng, steps.into())) {
+            let found = {
+                let planner = &mut alone(slf)?.planner; // `progress` may use it, too
+                py.detach(|| planner.plan(state.into(), portion, &mut rng, steps.into()))
+            };
+            match found {
                 Ok(plan) => return Ok(plan.knots.iter().map(row).collect()),
                 Err(Error::NoPlan { .. }) => py.check_signals()?,
                 Err(error) => return Err(rejected(error)),
@@ -185,20 +240,19 @@ impl Planner {
     }
 
     fn improve(
-        &mut self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         state: [f32; 4],
         plan: Vec<Row>,
         iterations: u32,
     ) -> PyResult<(Vec<Row>, f32)> {
         let mut plan: Vec<_> = plan.into_iter().map(knot).collect();
-        let cost = py.detach(|| self.0.improve(state.into(), iterations, &mut plan));
+        let planner = &mut alone(slf)?.planner;
+        let cost = slf.py().detach(|| planner.improve(state.into(), iterations, &mut plan));
         Ok((plan.iter().map(row).collect(), cost.map_err(rejected)?))
     }
 
     fn improve_each(
-        &mut self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         states: Vec<[f32; 4]>,
         plans: Vec<Vec<Row>>,
         iterations: u32,
@@ -206,7 +260,8 @@ impl Planner {
         let states: Vec<_> = states.into_iter().map(State::from).collect();
         let knots = |plan: Vec<_>| plan.into_iter().map(knot).collect::<Vec<_>>();
         let mut plans: Vec<_> = plans.into_iter().map(knots).collect();
-        let costs = py.detach(|| self.0.improve_each(&states, iterations, &mut plans));
+        let planner = &mut alone(slf)?.planner;
+        let costs = slf.py().detach(|| planner.improve_each(&states, iterations, &mut plans));
         let rows = plans.iter().map(|plan| plan.iter().map(row).collect()).collect();
         Ok((rows, costs.map_err(rejected)?))
     }
@@ -223,11 +278,6 @@ fn row(&Knot { state, torque, gain: [k1, k2, k3, k4], .. }: &Knot<f32>) -> Row {
     [x1, x2, x3, x4, torque, k1, k2, k3, k4]
 }
 
-fn valid(state: [f32; 4]) -> PyResult<State<f32>> {
-    let state = State::from(state);
-    state.validate().map_err(rejected).map(|()| state)
-}
-
 /// A gain and the region in which its torque lasts.
 type Region = ([f32; 4], Matrix);
 
@@ -241,23 +291,41 @@ pub fn plan_torque(row: Option<Row>, after: After, state: [f32; 4]) -> PyResult<
     let region = |(gain, factor)| regulator::Region { gain, factor };
     let (target, moving, resting) = (target.into(), region(moving), region(resting));
     let after = Feedback { target, torque, moving, resting, reach };
-    Ok(Plan { knots: row.map(knot).as_slice(), after }.torque(0, valid(state)?))
+    match (Plan { knots: row.map(knot).as_slice(), after }).torque(0, state.into()) {
+        torque if torque.is_finite() => Ok(torque),
+        torque => Err(wrong("state", "so near the plan that the torque is finite", torque)),
+    }
 }
 
 /// Swings up without a plan.
 #[pyclass(module = "acrobot_rs._native")]
-pub struct SwingUp(plan::SwingUp<Damped<Fast>>);
+pub struct SwingUp {
+    swing_up: plan::SwingUp<Damped<Fast>>,
+    arguments: (Acrobot, f64),
+}
 
 #[pymethods]
 impl SwingUp {
     #[new]
-    fn new(acrobot: PyRef<'_, Acrobot>, max_torque: f32) -> PyResult<Self> {
-        let params = acrobot.acrobot.params().cast();
-        plan::SwingUp::new(params, max_torque).map(Self).map_err(rejected)
+    #[pyo3(signature = (acrobot, max_torque, is_holding = false))]
+    fn new(acrobot: &Bound<'_, Acrobot>, max_torque: f64, is_holding: bool) -> PyResult<Self> {
+        let params = machine(acrobot)?;
+        let mut swing_up = narrow(
+            || plan::SwingUp::new(params.cast(), max_torque as f32),
+            || plan::SwingUp::<Damped<Portable>>::new(params, max_torque),
+        )?;
+        swing_up.is_holding = is_holding;
+        Ok(Self { swing_up, arguments: (alone(acrobot)?.clone(), max_torque) })
     }
 
-    fn torque(&mut self, state: [f32; 4]) -> PyResult<f32> {
-        self.0.torque(state.into()).map_err(rejected)
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
+        let this = alone(slf)?;
+        let (acrobot, max_torque) = this.arguments.clone();
+        Ok((slf.get_type(), (acrobot, max_torque, this.swing_up.is_holding)))
+    }
+
+    fn torque(slf: &Bound<'_, Self>, state: [f32; 4]) -> PyResult<f32> {
+        alone(slf)?.swing_up.torque(state.into()).map_err(rejected)
     }
 }
 
@@ -269,7 +337,7 @@ pub struct Estimator(ParameterEstimator<Damped<Portable>>);
 impl Estimator {
     #[new]
     fn new(
-        acrobot: PyRef<'_, Acrobot>,
+        acrobot: &Bound<'_, Acrobot>,
         angle_std: f64,
         torque_std: f64,
         parameter_std: [f64; 10],
@@ -280,25 +348,40 @@ impl Estimator {
             ParameterStd { mass1, mass2, length1, inertia1, inertia2, ..Default::default() };
         let std = ParameterStd { damping1, damping2, coulomb1, coulomb2, rotor, ..links };
         let noise = Noise { angle_std, torque_std };
-        let estimator = ParameterEstimator::new(acrobot.acrobot.params(), std, noise);
-        estimator.map(Self).map_err(|error| invalid(error, None))
+        let estimator = ParameterEstimator::new(alone(acrobot)?.acrobot.params(), std, noise);
+        estimator.map(Self).map_err(|error| match place_of(error) {
+            Some(place) => named(error, format_args!("parameter_std['{}']", NAMES[place])),
+            None => rejected(error),
+        })
     }
 
-    fn correct(&mut self, angles: [f64; 2]) -> PyResult<[f64; 4]> {
-        self.0.correct(angles).map_err(rejected)?;
-        Ok(self.0.state().into())
+    fn correct(slf: &Bound<'_, Self>, angles: [f64; 2]) -> PyResult<[f64; 4]> {
+        let mut this = alone(slf)?;
+        this.0.correct(angles).map_err(rejected)?;
+        Ok(this.0.state().into())
     }
 
-    fn predict(&mut self, torque: f64) -> PyResult<()> {
-        self.0.predict(torque).map_err(rejected)
+    fn predict(slf: &Bound<'_, Self>, torque: f64) -> PyResult<()> {
+        alone(slf)?.0.predict(torque).map_err(rejected)
     }
 
-    fn state_std(&self) -> Option<[f64; 4]> {
-        self.0.state_std()
+    fn state_std(slf: &Bound<'_, Self>) -> PyResult<Option<[f64; 4]>> {
+        Ok(alone(slf)?.0.state_std())
     }
 
-    fn params(&self) -> Named<f64> {
-        named_numbers(self.0.params())
+    fn params(slf: &Bound<'_, Self>) -> PyResult<Named<f64>> {
+        Ok(named_numbers(alone(slf)?.0.params()))
+    }
+
+    /// Makes any estimator, which `__setstate__` then replaces by a copy of this one.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
+        let any = (Acrobot::new(false, "gymnasium")?, 1.0, 1.0, [0.0; 10]);
+        Ok((slf.get_type(), any, save(slf.py(), &alone(slf)?.0)?))
+    }
+
+    fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
+        alone(slf)?.0 = load(bytes)?;
+        Ok(())
     }
 }
 
@@ -307,7 +390,7 @@ impl Estimator {
 /// deficiency.
 #[pyfunction]
 pub fn identify(
-    acrobot: PyRef<'_, Acrobot>,
+    acrobot: &Bound<'_, Acrobot>,
     recordings: Vec<Vec<[f64; 4]>>,
 ) -> PyResult<(Named<f64>, Named<[f64; 3]>, usize)> {
     let sample = |[angle1, angle2, torque1, torque2]: [f64; 4]| Sample {
@@ -317,8 +400,8 @@ pub fn identify(
     let recordings: Vec<Vec<_>> =
         recordings.into_iter().map(|rows| rows.into_iter().map(sample).collect()).collect();
     let recordings: Vec<&[_]> = recordings.iter().map(Vec::as_slice).collect();
-    let (params, fit) =
-        control::identify::identify(&recordings, acrobot.acrobot.params()).map_err(rejected)?;
+    let (params, fit) = control::identify::identify(&recordings, alone(acrobot)?.acrobot.params())
+        .map_err(rejected)?;
     let Fit { values, std_errors, weakest, rank_deficiency } = fit;
     let numbers = Fit::NAMES.into_iter().enumerate();
     let numbers = numbers.map(|(i, name)| (name, [values[i], std_errors[i], weakest[i]])).collect();

@@ -1,11 +1,9 @@
 //! A batch of any arithmetic and task.
 
-use std::num::NonZeroU32;
-
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
-use acrobot::batch::{Autoreset, Member, StepBuffers, VecBatch};
+use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::task::{Draw, Draws};
+use acrobot::task::{AnyTask, Draw, Draws};
 use acrobot::{Acrobot, Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -14,9 +12,9 @@ use pyo3::exceptions::{PyMemoryError, PyTypeError};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::task::AnyTask;
 use crate::{
     InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, shown, with,
+    wrong,
 };
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
@@ -52,17 +50,14 @@ pub enum Engine {
 }
 
 impl Engine {
-    pub fn new(
-        arithmetic: &str,
-        task: AnyTask,
-        len: usize,
-        seed: SeedSequence,
-    ) -> Result<Self, Error> {
-        Ok(match arithmetic {
-            "float64" => Self::Float64(Many::new(task, len, seed)?),
-            "host" => Self::Host(Many::new(task, len, seed)?),
-            _ => Self::Float32(Many::new(task, len, seed)?),
-        })
+    pub fn new(arithmetic: &str, task: AnyTask, len: usize, seed: SeedSequence) -> PyResult<Self> {
+        match arithmetic {
+            "float32" => Many::new(task, len, seed).map(Self::Float32),
+            "float64" => Many::new(task, len, seed).map(Self::Float64),
+            "host" => Many::new(task, len, seed).map(Self::Host),
+            _ => return Err(wrong("arithmetic", "float32, float64 or host", arithmetic)),
+        }
+        .map_err(out_of_memory)
     }
 }
 
@@ -79,68 +74,20 @@ macro_rules! with_batch {
 pub(crate) use with_batch;
 
 /// A batch, and memory for its inputs. Numbers are `f64` outside, which `f32` becomes exactly.
-#[derive(Clone, Serialize, Deserialize)]
-#[serde(bound = "", into = "Saved<A>", try_from = "Saved<A>")]
+#[derive(Serialize, Deserialize)]
+#[serde(bound = "", transparent)]
 pub struct Many<A: Arithmetic> {
     pub batch: VecBatch<A, AnyTask>,
+    #[serde(skip)]
     actions: Vec<u8>,
     /// Empty if the inputs of the next step are actions.
+    #[serde(skip)]
     torques: Vec<A::Scalar>,
-}
-
-/// A batch in a snapshot.
-#[derive(Serialize, Deserialize)]
-#[serde(bound = "")]
-struct Saved<A: Arithmetic> {
-    task: AnyTask,
-    max_steps: NonZeroU32,
-    autoreset: Autoreset,
-    /// `None` if all acrobots share their parameters.
-    draws: Option<Params<Draw<A::Scalar>>>,
-    members: Vec<Member<A>>,
-}
-
-impl<A: Arithmetic> From<Many<A>> for Saved<A> {
-    fn from(Many { batch, .. }: Many<A>) -> Self {
-        Self {
-            task: *batch.task(),
-            max_steps: batch.max_steps(),
-            autoreset: batch.autoreset(),
-            draws: batch.has_own_params().then(|| *batch.draws().params()),
-            members: (0..batch.len()).filter_map(|index| batch.member(index).ok()).collect(),
-        }
-    }
-}
-
-impl<A: Arithmetic> TryFrom<Saved<A>> for Many<A> {
-    type Error = Error;
-
-    fn try_from(
-        Saved { task, max_steps, autoreset, draws, members }: Saved<A>,
-    ) -> Result<Self, Error> {
-        let mut many = Self::new(task, members.len(), SeedSequence::new(0))?;
-        many.batch.set_max_steps(max_steps);
-        if let Some(first) = members.first() {
-            many.batch.set_all_params(first.params)?;
-        }
-        if draws.is_some() {
-            many.batch.own_params()?;
-        }
-        for (index, member) in members.into_iter().enumerate() {
-            many.batch.set_member(index, member)?;
-        }
-        many.batch.set_draws(draws.map_or(Ok(Draws::NONE), Draws::new)?)?;
-        many.batch.set_autoreset(autoreset);
-        Ok(many)
-    }
 }
 
 impl<A: Arithmetic> Many<A> {
     fn new(task: AnyTask, len: usize, seed: SeedSequence) -> Result<Self, Error> {
-        let mut batch = VecBatch::new(seed, len)?;
-        batch.set_task(task);
-        batch.set_all_params(task.params().cast())?;
-        batch.set_reset_bounds(task.bounds());
+        let batch = VecBatch::with_task(seed, task, len)?;
         Ok(Self { batch, actions: Vec::new(), torques: Vec::new() })
     }
 
@@ -175,8 +122,11 @@ impl<A: Arithmetic> Many<A> {
         for (index, value) in values.iter().cycle().take(count).enumerate() {
             let index_in_name = (values.len() > 1).then_some(index);
             let name = Name(name, [index_in_name, None]);
-            let given = with::<A::Scalar>(self.params(index), name, value)?.cast();
-            let tried = alone.set_params(given).and_then(|()| alone.draw_params(&draws));
+            let params = with::<A::Scalar>(self.params(index), name, value)?;
+            let given = params.cast();
+            let tried = params.validate(); // its error shows the number before it is rounded
+            let tried = tried.and_then(|()| alone.set_params(given));
+            let tried = tried.and_then(|()| alone.draw_params(&draws));
             tried.map_err(|error| invalid(error, index_in_name))?;
             each.push(given);
         }
@@ -197,26 +147,24 @@ impl<A: Arithmetic> Many<A> {
             let rule = "a number; a reset can draw LINK_MOI_1 and LINK_MOI_2";
             return Err(PyTypeError::new_err(must_be(name, rule, shown(drawn))));
         }
-        let kind = drawn.get_type().name()?.to_string();
-        let numbers: &[&str] = match kind.as_str() {
-            "Normal" => &["low", "high", "mean", "std"],
-            _ => &["low", "high"],
-        };
-        let given = numbers.iter().map(|&number| {
-            with::<A::Scalar>(Params::DEFAULT, Name(name, [None; 2]), &drawn.getattr(number)?)
+        let kind: String = drawn.getattr("_KIND")?.extract()?;
+        let attributes = ["low", "high", "mean", "std"];
+        let given = attributes[..if kind == "normal" { 4 } else { 2 }].iter().map(|number| {
+            with::<A::Scalar>(Params::DEFAULT, Name(name, [None; 2]), &drawn.getattr(*number)?)
         });
         let given = given.collect::<PyResult<Vec<_>>>()?;
-        let mut draws = *self.batch.draws().params();
+        let (mut draws, mut exact) = (*self.batch.draws().params(), Draws::FIXED);
         for place in places(name) {
-            let number = |i: usize| A::Scalar::from_f64(given[i].numbers()[place].1);
-            let (low, high) = (number(0), number(1));
-            *draws.numbers_mut()[place] = match kind.as_str() {
-                "Normal" => Draw::Normal { mean: number(2), std: number(3), low, high },
-                "LogUniform" => Draw::LogUniform { low, high },
-                _ => Draw::Uniform { low, high },
-            };
+            let numbers = given.iter().map(|params| params.numbers()[place].1);
+            let numbers = numbers.collect::<Vec<_>>();
+            *draws.numbers_mut()[place] = draw(&kind, &numbers);
+            *exact.numbers_mut()[place] = draw(&kind, &numbers);
         }
         let rejected = |error| invalid(error, None);
+        // Errors of an acrobot in f64 show the numbers before they are rounded.
+        let mut alone = Acrobot::<Damped<Reference>>::new(0);
+        let tried = alone.set_params(self.params(0)).and_then(|()| Draws::new(exact));
+        tried.and_then(|exact| alone.draw_params(&exact)).map_err(rejected)?;
         let draws = Draws::new(draws).map_err(rejected)?;
         match self.batch.set_draws(draws) {
             Err(Error::SharedParams) => {
@@ -255,7 +203,7 @@ impl<A: Arithmetic> Many<A> {
                     |torque| !torque.is_nan(),
                     |index, torque| {
                         let (low, high) = if is_own { bounds(index) } else { first };
-                        A::Scalar::from_f64(task.torque(torque.into(), low, high))
+                        A::Scalar::from_f64(torque_of(task, torque.into(), low, high))
                     },
                     match task {
                         AnyTask::Swingup => "a number from -1 to 1",
@@ -276,6 +224,31 @@ impl<A: Arithmetic> Many<A> {
             (false, true) => self.batch.par_step_into(torques, buffers),
         }
     }
+}
+
+/// A draw between two numbers, or between two with a mean and a standard deviation.
+fn draw<S: Real>(kind: &str, numbers: &[f64]) -> Draw<S> {
+    let number = |i: usize| S::from_f64(numbers[i]);
+    let (low, high) = (number(0), number(1));
+    match kind {
+        "normal" => Draw::Normal { mean: number(2), std: number(3), low, high },
+        "log_uniform" => Draw::LogUniform { low, high },
+        _ => Draw::Uniform { low, high },
+    }
+}
+
+/// The torque of a continuous action, N m, which is within the smallest and the largest torque. In
+/// a swing-up the action 1 is the largest torque, −1 the smallest and 0 none. In other tasks
+/// actions are torques.
+pub fn torque_of(task: AnyTask, action: f64, low: f64, high: f64) -> f64 {
+    let torque = match task {
+        AnyTask::Swingup => match action.clamp(-1.0, 1.0) {
+            action if action < 0.0 => action * -low,
+            action => action * high,
+        },
+        _ => action,
+    };
+    torque.max(low).min(high)
 }
 
 /// Checks all inputs, then converts them.

@@ -5,14 +5,13 @@ mod control;
 mod engine;
 mod pool;
 mod single;
-mod task;
 
 use std::fmt::{self, Display, Formatter};
 
 use acrobot::arithmetic::{Damped, Host, Real};
 use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::render::{Figure, Frame};
-use acrobot::task::{Balance, Gymnasium, ResetBounds, Swingup, Task};
+use acrobot::task::{AnyTask, Balance, Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::{Error, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
@@ -54,9 +53,9 @@ mod _native {
     }
 }
 
-/// Says what to do when an environment is in use.
-const BUSY: &str = "another thread is stepping or resetting an environment; \
-    change parameters and call methods between its steps, or make an environment for each thread";
+/// Says what to do when an object is in use.
+const BUSY: &str = "another thread is using this environment, planner or estimator; \
+    call it between the calls of that thread, or make one for each thread";
 
 /// The only access to an object. Without Python's lock any call can meet another thread's; with it,
 /// steps and resets of many let other threads run, and so does Python code that converts a number.
@@ -67,6 +66,7 @@ fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<Py
 
 /// Python's names of the parameters, in the order of the crate's numbers. `LINK_MOI` is both
 /// moments of inertia.
+// derive.py writes the names.
 const NAMES: [&str; 21] = [
     "LINK_LENGTH_1",
     "LINK_LENGTH_2",
@@ -112,12 +112,15 @@ fn rejected(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
+/// The place among the numbers of the parameter that was rejected, if it is one.
+fn place_of(error: Error) -> Option<usize> {
+    let names: [(_, f64); NAMES.len()] = Params::DEFAULT.numbers();
+    names.iter().position(|(name, _)| *name == error.name())
+}
+
 /// The error of a rejected parameter, of all environments or of one, with Python's name.
 fn invalid(error: Error, index: Option<usize>) -> PyErr {
-    let names: [(_, f64); NAMES.len()] = Params::DEFAULT.numbers();
-    let Some(place) = names.iter().position(|(name, _)| *name == error.name()) else {
-        return rejected(error);
-    };
+    let Some(place) = place_of(error) else { return rejected(error) };
     let name = NAMES[place];
     let torque = places(name).position(|each| each == place).filter(|_| name == "AVAIL_TORQUE");
     named(error, Name(name, [index, torque]))
@@ -128,12 +131,19 @@ fn named(error: Error, name: impl Display) -> PyErr {
     PyValueError::new_err(error.named(name).to_string())
 }
 
+/// The task with this name.
+fn task(name: &str) -> PyResult<AnyTask> {
+    let task = AnyTask::ALL.into_iter().find(|task| task.name() == name);
+    let names = AnyTask::ALL.map(|task| task.name());
+    task.ok_or_else(|| wrong("task", format_args!("one of {names:?}"), name))
+}
+
 /// A number, unless the scalar `S` makes infinity or 0 of it.
 fn held<S: Real>(name: impl Display, number: f64) -> PyResult<f64> {
     let held = S::from_f64(number).to_f64();
     if number.is_finite() && (held.is_infinite() || held == 0.0 && number != 0.0) {
         let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
-        return Err(PyValueError::new_err(must_be(name, rule, format_args!("{number:?}"))));
+        return Err(wrong(name, rule, format_args!("{number:?}")));
     }
     Ok(number)
 }
@@ -154,6 +164,10 @@ fn check_states<S: Real>(states: &[[f64; 4]]) -> PyResult<()> {
 /// An error message in the form of the crate's.
 fn must_be(name: impl Display, rule: impl Display, got: impl Display) -> String {
     format!("{name} must be {rule}, got {got}")
+}
+
+fn wrong(name: impl Display, rule: impl Display, got: impl Display) -> PyErr {
+    PyValueError::new_err(must_be(name, rule, got))
 }
 
 /// Converts a parameter from Python, or raises a `TypeError` that names it.
@@ -177,8 +191,7 @@ fn with<S: Real>(mut params: Params, name: Name<'_>, value: &Bound<'_, PyAny>) -
         "AVAIL_TORQUE" => {
             let count = value.len().unwrap_or(3); // without a length, it is no sequence
             if count != 3 {
-                let message = must_be(name, "3 numbers, such as [-2, 0, 2]", count);
-                return Err(PyValueError::new_err(message));
+                return Err(wrong(name, "3 numbers, such as [-2, 0, 2]", count));
             }
             params.torques = convert(&name, "a sequence of 3 numbers", value)?;
             for (index, &torque) in params.torques.iter().enumerate() {
@@ -190,7 +203,7 @@ fn with<S: Real>(mut params: Params, name: Name<'_>, value: &Bound<'_, PyAny>) -
             params.dynamics = match convert(&name, rule, value)? {
                 "book" => Dynamics::Book,
                 "nips" => Dynamics::Nips,
-                _ => return Err(PyValueError::new_err(must_be(name, rule, shown(value)))),
+                _ => return Err(wrong(name, rule, shown(value))),
             }
         }
         _ => {
@@ -222,7 +235,7 @@ fn render<'py>(
 }
 
 /// Changes when a snapshot of another layout would be read.
-const SNAPSHOT_VERSION: u8 = 6;
+const SNAPSHOT_VERSION: u8 = 7;
 
 /// Serializes a snapshot, for pickle.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {

@@ -1,56 +1,50 @@
 //! The single environments: one acrobot, bit-identical to Gymnasium's, or of another task.
 
 use acrobot::arithmetic::{Damped, Host};
-use acrobot::task::{Balance, Swingup};
+use acrobot::task::AnyTask;
 use acrobot::{Portable, State, Step};
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyAssertionError, PyValueError};
+use pyo3::exceptions::PyAssertionError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
-use crate::task::AnyTask;
+use crate::engine::torque_of;
 use crate::{
     InvalidAction, Name, Params, alone, convert, invalid, load, must_be, named, rejected, render,
-    save, shown, with,
+    save, shown, with, wrong,
 };
 
 pyo3::import_exception!(gymnasium.error, ResetNeeded);
 
-/// An acrobot of a task.
+/// An acrobot of a task, which computes as Gymnasium does in its task.
 #[derive(Clone, Serialize, Deserialize)]
 pub enum One {
-    Gymnasium(acrobot::Acrobot<Damped<Host>>),
-    Swingup(acrobot::Acrobot<Damped<Portable>, Swingup>),
-    Balance(acrobot::Acrobot<Damped<Portable>, Balance>),
+    Host(acrobot::Acrobot<Damped<Host>, AnyTask>),
+    Portable(acrobot::Acrobot<Damped<Portable>, AnyTask>),
 }
 
-/// Does something with the acrobot, whatever its task.
+/// Does something with the acrobot, whatever its arithmetic.
 macro_rules! with_one {
     ($one:expr, $acrobot:ident => $result:expr) => {
         match $one {
-            One::Gymnasium($acrobot) => $result,
-            One::Swingup($acrobot) => $result,
-            One::Balance($acrobot) => $result,
+            One::Host($acrobot) => $result,
+            One::Portable($acrobot) => $result,
         }
     };
 }
 
 impl One {
-    fn new(task: &str) -> Self {
-        match AnyTask::named(task) {
-            AnyTask::Gymnasium => Self::Gymnasium(acrobot::Acrobot::new(0)),
-            AnyTask::Swingup => Self::Swingup(acrobot::Acrobot::new(0)),
-            AnyTask::Balance => Self::Balance(acrobot::Acrobot::new(0)),
+    fn new(task: AnyTask) -> PyResult<Self> {
+        match task {
+            AnyTask::Gymnasium => acrobot::Acrobot::with_task(0, task).map(Self::Host),
+            _ => acrobot::Acrobot::with_task(0, task).map(Self::Portable),
         }
+        .map_err(rejected)
     }
 
     fn task(&self) -> AnyTask {
-        match self {
-            Self::Gymnasium(_) => AnyTask::Gymnasium,
-            Self::Swingup(_) => AnyTask::Swingup,
-            Self::Balance(_) => AnyTask::Balance,
-        }
+        with_one!(self, acrobot => *acrobot.task())
     }
 
     pub fn params(&self) -> Params {
@@ -92,8 +86,7 @@ impl Acrobot {
     /// Checks the torques and the noise.
     fn validate(&self) -> PyResult<()> {
         if self.torques.is_empty() {
-            let message = must_be("AVAIL_TORQUE", "one or more numbers of N m", "none");
-            return Err(PyValueError::new_err(message));
+            return Err(wrong("AVAIL_TORQUE", "one or more numbers of N m", "none"));
         }
         let params = Params { torque_noise: self.noise, ..self.acrobot.params() };
         params.validate().map_err(|error| invalid(error, None))?;
@@ -110,10 +103,10 @@ impl Acrobot {
 impl Acrobot {
     #[new]
     #[pyo3(signature = (continuous = false, task = "gymnasium"))]
-    fn new(continuous: bool, task: &str) -> Self {
-        let acrobot = One::new(task);
+    pub fn new(continuous: bool, task: &str) -> PyResult<Self> {
+        let acrobot = One::new(crate::task(task)?)?;
         let torques = acrobot.params().torques.into();
-        Self { continuous, acrobot, torques, noise: 0.0, started: false }
+        Ok(Self { continuous, acrobot, torques, noise: 0.0, started: false })
     }
 
     fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -228,7 +221,7 @@ impl Acrobot {
         let torques = &self.torques;
         let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
         let high = torques.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        self.acrobot.task().torque(action, low, high)
+        torque_of(self.acrobot.task(), action, low, high)
     }
 }
 

@@ -4,8 +4,6 @@ no result is NaN.
 With more examples: ``python -m pytest --hypothesis-profile=long tests/test_anything.py``.
 """
 
-import contextlib
-
 import acrobot_rs
 import gymnasium
 import numpy as np
@@ -52,11 +50,6 @@ OPTIONS = st.none() | st.dictionaries(
     KEYS, st.lists(st.booleans()) | NUMBERS | STATES | st.lists(STATES, max_size=4) | ANYTHING
 )
 SEEDS = st.none() | st.integers(0, 2**200) | ANYTHING
-
-
-def attempt(function, *args):
-    with contextlib.suppress(REJECTIONS):
-        return function(*args)
 
 
 def calls(seeds, values, states, actions, *others):
@@ -119,56 +112,3 @@ def test_a_vector_environment(num_envs, limit, autoreset, others, sequence):
     kind = acrobot_rs.AcrobotSwingupVectorEnv if others is None else acrobot_rs.AcrobotVectorEnv
     arguments = {"render_mode": "ansi", "autoreset_mode": autoreset, **(others or {})}
     play(kind(num_envs, limit, **arguments), sequence)
-
-
-def damaged(good):
-    """Snapshots with bytes removed, changed or added, and random bytes."""
-    change = st.tuples(st.integers(0, len(good) - 1), st.integers(1, 255))
-
-    def apply(changes, end, more):
-        bad = bytearray(good)
-        for index, difference in changes:
-            bad[index] ^= difference
-        return bytes(bad[:end]) + more
-
-    ends = st.just(len(good)) | st.integers(0, len(good))
-    more = st.just(b"") | st.binary(max_size=4)
-    return st.builds(apply, st.lists(change, max_size=4), ends, more) | st.binary()
-
-
-def played(env):
-    """An environment after a step."""
-    env.reset(seed=1)
-    env.step(env.action_space.sample())
-    return env
-
-
-SINGLES = played(acrobot_rs.AcrobotEnv())._native.__getstate__()
-BATCHES = played(
-    acrobot_rs.AcrobotVectorEnv(2, 1, autoreset_mode="SameStep", dt=LogUniform(0.1, 0.2))
-)._native.__getstate__()
-
-
-@given(damaged(SINGLES))
-def test_damaged_snapshots_of_single_environments(snapshot):
-    env = played(acrobot_rs.AcrobotEnv())
-    before = env._native.__getstate__()
-    if attempt(lambda: env._native.__setstate__(snapshot) or True) is None:
-        assert env._native.__getstate__() == before
-    if env.state is not None and (result := attempt(env.step, 1)):  # torques may be the actions
-        assert not np.isnan(result[0]).any()
-    env._native.render("ansi")
-
-
-@given(damaged(BATCHES))
-def test_damaged_snapshots_of_vector_environments(snapshot):
-    envs = played(acrobot_rs.AcrobotVectorEnv())
-    before = envs._native.__getstate__()
-    if attempt(lambda: envs._native.__setstate__(snapshot) or True) is None:
-        assert envs._native.__getstate__() == before
-    count = len(envs._native)
-    vars(envs)["num_envs"] = count
-    observations, finals = np.zeros((2, count, 6), np.float32)
-    attempt(envs._native.step, envs, np.ones(count, np.int64), observations, finals)
-    assert not np.isnan(observations).any() and np.isfinite(envs.state).all()
-    envs._native.render(0, "ansi")

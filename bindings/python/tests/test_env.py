@@ -106,11 +106,6 @@ def test_invalid_parameters_are_rejected_by_their_names(env, name, value, error)
         setattr(env, name, value)
 
 
-def test_invalid_options_are_rejected(env):
-    with rejects(env, ValueError, "low must be a number, got "):
-        env.reset(seed=1, options={"low": [0.05]})
-
-
 def test_the_state_can_be_set_from_any_four_numbers(env):
     with pytest.raises(AssertionError, match="reset"):  # as Gymnasium's
         AcrobotEnv().step(0)

@@ -1,12 +1,10 @@
-"""The installed package has what a registry shows, and plays recorded episodes."""
+"""The installed package has what a registry shows."""
 
 import sys
 import sysconfig
 from importlib.metadata import distribution
 
 import acrobot_rs
-import gymnasium
-import numpy as np
 import pytest
 
 
@@ -37,14 +35,3 @@ def test_files():
 @pytest.mark.skipif(not sysconfig.get_config_var("Py_GIL_DISABLED"), reason="needs free threads")
 def test_the_import_brings_back_no_lock():
     assert not sys._is_gil_enabled()
-
-
-def test_recorded_velocities():
-    """All bits of the velocities after some twelve episodes in each environment."""
-    envs = gymnasium.make_vec("acrobot_rs/Acrobot-v1", num_envs=8)
-    observations, _ = envs.reset(seed=42)
-    for _ in range(1000):
-        observations, *_ = envs.step(np.where(observations[:, 4] > 0, 0, 2))
-    recorded = [-1.2072487, 2.8623645, -0.43208173, 4.013114]
-    recorded += [-0.08323621, -2.5330896, -0.25388432, 1.6371081]
-    assert (observations[:, 5] == np.float32(recorded)).all()

@@ -1,52 +1,128 @@
-"""Draws and rejected calls are those of all packages: the recordings in `tests/data`."""
+"""Results and rejected calls are those of all packages: the recordings in `tests/data`."""
 
 import functools
+import inspect
 import json
-import pickle
 import re
 from pathlib import Path
 
 import acrobot_rs
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotEnv, AcrobotSwingupEnv, AcrobotSwingupVectorEnv, AcrobotVectorEnv
+from acrobot_rs import AcrobotBalanceVectorEnv, AcrobotContinuousVectorEnv, AcrobotEnv
+from acrobot_rs import AcrobotSwingupEnv, AcrobotSwingupVectorEnv, AcrobotVectorEnv
+from acrobot_rs import LogUniform, Normal, Uniform, control
 from gymnasium.error import InvalidAction
 from vectors import rejects
 
 DATA = Path(__file__).parents[3] / "tests/data"
-
-
-@pytest.mark.parametrize("children", [False, True])
-def test_draws_are_those_of_numpy(children):
-    """With a seed for each environment, and with the children of 42."""
-    rows = [line.split(",") for line in (DATA / "draws.csv").read_text().splitlines()[1:]]
-    rows = [row for row in rows if (row[1] != "") == children]
-    envs = AcrobotVectorEnv(
-        *(len(rows), 2, None, "SameStep"),
-        LINK_MASS_2=acrobot_rs.Uniform(0.8, 1.2),
-        LINK_MOI_1=acrobot_rs.LogUniform(0.5, 2.0),
-        gravity=acrobot_rs.Normal(9.8, 0.1, low=9.5, high=10.1),
-    )
-
-    def drawn(envs):
-        names = "LINK_MASS_2", "LINK_MOI_1", "gravity"
-        columns = [envs.get_parameter(name) for name in names]
-        return np.column_stack([*columns, envs.state]).astype(np.float32)
-
-    envs.reset(seed=42 if children else [int(row[0]) for row in rows])
-    first = drawn(envs)
-    np.testing.assert_array_equal(first, np.array([row[2:] for row in rows], np.float32))
-    twin = pickle.loads(pickle.dumps(envs))
-    for each in (envs, twin) * 2:  # the second step resets
-        each.step([0] * len(rows))
-    assert (drawn(envs) == drawn(twin)).all() and (drawn(envs) != first).all()
-
-
-ROWS = [json.loads(line) for line in (DATA / "rejections.jsonl").read_text().splitlines()]
+ROWS, RESULTS = (
+    [json.loads(line) for line in (DATA / name).read_text().splitlines()]
+    for name in ("rejections.jsonl", "results.jsonl")
+)
 #: The crate's names of the numbers without indices, and Python's.
 CRATES = [name.split("[")[0] for row in ROWS if row["call"] == "params" for name in row["set"]]
 PYTHONS = [name for name in AcrobotEnv._NAMES if name not in ("LINK_MOI", "book_or_nips")]
 NAMES = dict(zip(dict.fromkeys(CRATES), PYTHONS, strict=True))
+COLUMNS = [name for name in PYTHONS for _ in range(3 if name == "AVAIL_TORQUE" else 1)]
+#: Python has neither single acrobots in float32 nor the controller for microcontrollers.
+RESULTS = [row for row in RESULTS if row.get("arithmetic") != "fast"]
+RESULTS = [row for row in RESULTS if row["call"] not in ("episode", "control")]
+
+
+class MyNormal(Normal):
+    """A subclass draws as its base."""
+
+
+def flat(*results):
+    return np.concatenate([np.ravel(each) for each in results])
+
+
+def batch(row, env):
+    """Torques that are not clipped. In a swing-up the action 1 is 2 N m."""
+    draws = {}
+    for name, (kind, low, high, mean, std) in zip(COLUMNS, np.reshape(row["draws"], (-1, 5))):
+        if kind:
+            others = {"mean": mean, "std": std} if kind == 3 else {}
+            draws[name] = (Uniform, LogUniform, MyNormal)[int(kind) - 1](
+                low=low, high=high, **others
+            )
+    kind = (AcrobotContinuousVectorEnv, AcrobotSwingupVectorEnv, AcrobotBalanceVectorEnv)[
+        row["task"]
+    ]
+    envs = kind(row["count"], row["max_steps"], autoreset_mode="SameStep", **draws)
+    torques = envs.AVAIL_TORQUE
+    if row["task"] == 0:
+        envs.AVAIL_TORQUE = [-2.0, 0.0, 2.0]
+    envs.reset(seed=sum(word << 32 * i for i, word in enumerate(row["seed"])))
+    scale = 2 if row["task"] == 1 else 1
+    actions = np.float32(row["torques"]).reshape(-1, row["count"], 1) / scale
+    results = [flat(*envs.step(action)[1::-1]) for action in actions]
+    envs.AVAIL_TORQUE = torques
+    snapshot = bytes(row["snapshot"][:-4])  # without its checksum
+    assert snapshot in envs._native.__getstate__()
+    return flat(*results)
+
+
+def model(row, env):
+    function, values = getattr(control, row["call"]), row | {"env": env}
+    if "q" in row:
+        Q = np.reshape(row["q"], (4, 4))
+        linearize = control.linearize if row["call"] == "lqr" else control.linearize_step
+        model = linearize(row["state"], row["torque"], env)
+        count = [3] if row["call"] == "tvlqr" else []
+        A, B = (np.broadcast_to(each, (*count, *each.shape)) for each in model)
+        values |= {"A": A, "B": B, "Q": Q, "Qf": Q, "R": row["r"]}
+    results = function(**{name: values[name] for name in inspect.signature(function).parameters})
+    return flat(*results) if isinstance(results, tuple) else flat(results)
+
+
+def plan(row, env):
+    planner = control.Planner(row["limit"], env, elbow=row["elbow"])
+    others = {"steps": row["steps"], "tries": row["tries"], "seed": row["seed"][0]}
+    first = planner.plan([0.0] * 4, **others)
+    improved, cost = planner.improve(row["start"], first, row["iterations"])
+    upright = np.float32(control.UPRIGHT)
+    at = (0, row["start"]), (2, upright), (row["steps"], upright)
+    return flat(first._rows(), cost, improved._rows(), [improved.torque(*each) for each in at])
+
+
+def swing_up(row, env):
+    swing_up = control.SwingUp(row["limit"], env)
+    return [swing_up.torque(state) for state in np.reshape(row["states"], (-1, 4))]
+
+
+def estimate(row, env):
+    std = {"LINK_MASS_2": row["mass2_std"], "COULOMB_2": row["coulomb2_std"]}
+    noise = {name: row[name] for name in ("angle_std", "torque_std")}
+    estimator = control.Estimator(env, **noise, parameter_std=std)
+    for angles, torque in zip(np.reshape(row["angles"], (-1, 2)), row["torques"]):
+        estimator.correct(angles)
+        estimator.predict(torque)
+    del row["result"][:4]  # the state
+    return flat(estimator.state_std, [*estimator.params.values()])
+
+
+def identify(row, env):
+    found = control.identify([np.reshape(row["angles"], (-1, 2))], [row["torques"]], env)
+    assert [*found.values.values()] == row["values"]
+    assert [*found.std_errors.values()] == row["std_errors"]
+    return [*found.params.values()]
+
+
+REPLAYS = {each.__name__: each for each in (batch, plan, swing_up, estimate, identify)}
+
+
+@pytest.mark.parametrize("row", RESULTS, ids=lambda row: row["call"])
+def test_results_are_those_of_rust(row):
+    params = dict(zip(COLUMNS, row.get("params", ())))
+    env = AcrobotEnv(**params | {"AVAIL_TORQUE": (-1.0, 0.0, 1.0)})
+    results = REPLAYS.get(row["call"], model)(row, env)
+    if row["call"] in ("estimate", "identify"):
+        del row["result"][-9:-6]  # the torques
+    assert np.array_equal(results, row["result"])
+
+
 STATE = ["theta1", "theta2", "dtheta1", "dtheta2"]
 MANY = functools.partial(AcrobotVectorEnv, 3)
 MAKERS = (

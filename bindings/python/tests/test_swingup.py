@@ -108,6 +108,8 @@ def test_the_default_parameters_are_those_of_rust(kind, many):
     untouched = Acrobot(continuous=True, task=kind._TASK)
     assert kind()._native.__getstate__() == untouched.__getstate__()
     assert many().parameters == kind().parameters
+    with pytest.raises(ValueError, match="task must be one of .* got x"):
+        Acrobot(task="x")
 
 
 @BOTH

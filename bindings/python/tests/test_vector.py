@@ -196,7 +196,7 @@ def test_a_call_of_another_thread_during_a_call_is_rejected(kind):
 
     env._native.set("LINK_MASS_1", Mass() if kind is AcrobotEnv else [Mass()])
     assert [type(each) for each in errors] == [RuntimeError] * 5
-    assert all(str(each).startswith("another thread is stepping or") for each in errors)
+    assert all(str(each).startswith("another thread is using this") for each in errors)
     assert env.dt == 0.2
 
 

@@ -35,12 +35,15 @@ def test_a_rejected_parameter_changes_nothing(error, name, value, message, gymna
     ("name", "value", "number"),
     [
         ("LINK_MASS_1", [1.0, 1e-300, 1.0], "1e-300"),
+        ("LINK_MASS_1", [1.0, -0.3, 1.0], "-0.3"),
+        ("LINK_MASS_1", Uniform(-0.3, 0.1), "-0.3"),
+        ("LINK_MASS_1", Uniform(0.4, 0.3), "0.4"),
         ("gravity", Normal(9.0, 1e300, 8.0, 10.0), "1e300"),
         ("AVAIL_TORQUE", Uniform((-1.0, 0.0, 1.0), (-1.0, 1e300, 1.0)), "1e300"),
     ],
 )
 def test_the_number_given_is_in_the_message(name, value, number):
-    """Not the infinity or the 0 that it becomes in float32."""
+    """Not the infinity, the 0 or the many digits that it becomes in float32."""
     envs = make_vec(3)
     with rejects(envs, ValueError, f"^{name}.* must be .*, got {number}$"):
         setattr(envs, name, value)

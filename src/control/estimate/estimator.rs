@@ -10,7 +10,7 @@
 use core::array::from_fn;
 
 use super::noise::{Given, Noise};
-use super::parameter_std::{PARAMETERS, ParameterStd, estimated};
+use super::parameter_std::{PARAMETERS, Parameter, ParameterStd, estimated};
 use crate::arithmetic::Arithmetic;
 use crate::control::model::LinearModel;
 use crate::control::model::partials::MassMatrix;
@@ -22,7 +22,7 @@ use crate::math::matrix::{
 };
 use crate::math::sealed::Sealed as _;
 use crate::physics::{
-    Params, Pendulum, State, coulomb_friction, directions, plus_scaled, saturate, wrap,
+    FIELDS, Params, Pendulum, State, coulomb_friction, directions, plus_scaled, saturate, wrap,
 };
 
 /// An angle is farther than so many standard deviations from its prediction only after a push.
@@ -73,8 +73,17 @@ pub type ParameterEstimator<A> = KalmanFilter<A, PARAMETERS>;
 /// or a [`ParameterEstimator`].
 ///
 /// In each `dt` of the parameters call [`correct`](Self::correct), decide, and call
-/// [`predict`](Self::predict): [an example](crate::guide::control#a-machine-that-you-measure).
+/// [`predict`](Self::predict): [an example](crate::guide::control#a-machine-that-you-measure). With
+/// the `serde` feature it can be saved, and a loaded one continues bit-identically.
 #[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "[Parameter<A::Scalar, K>; K]: serde::Serialize",
+        deserialize = "[Parameter<A::Scalar, K>; K]: serde::Deserialize<'de>"
+    ))
+)]
 pub struct KalmanFilter<A: Arithmetic, const K: usize> {
     model: Pendulum<A>,
     given: Given<A::Scalar>,
@@ -83,17 +92,6 @@ pub struct KalmanFilter<A: Arithmetic, const K: usize> {
     /// The covariances of the state. `None` before a measurement, and after an overflow.
     of_state: Option<Matrix<A::Scalar>>,
     parameters: [Parameter<A::Scalar, K>; K],
-}
-
-/// What is known of a parameter. Covariances have its given deviation as their unit.
-#[derive(Clone, Copy, Debug)]
-struct Parameter<S, const K: usize> {
-    deviation: S,
-    /// The smallest and the largest number.
-    limits: [S; 2],
-    /// The covariances with the state, and with each parameter.
-    with_state: [S; 4],
-    with_params: [S; K],
 }
 
 impl<A: Arithmetic> Estimator<A> {
@@ -122,8 +120,9 @@ impl<A: Arithmetic> ParameterEstimator<A> {
     ) -> Result<Self, Error> {
         let std = std.numbers();
         let given = estimated(params.numbers());
-        for (i, ((name, _), deviation)) in given.into_iter().zip(std).enumerate() {
-            let (value, unit) = (deviation.to_f64(), "its unit");
+        for (i, ((name, unit, _), deviation)) in estimated(FIELDS).into_iter().zip(std).enumerate()
+        {
+            let value = deviation.to_f64();
             Range::AtLeastZero.check(name, value, unit)?;
             if i >= 5 && !A::HAS_FRICTION && value > 0.0 {
                 let rule = "known unless the arithmetic is Damped, in";

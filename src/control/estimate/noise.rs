@@ -45,6 +45,7 @@ pub struct Noise<S = f64> {
 
 /// What follows from the given parameters and noise.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Given<S> {
     /// The variance of a measured angle, rad².
     pub(super) of_angle: S,

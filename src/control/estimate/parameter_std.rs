@@ -1,5 +1,7 @@
 //! Which parameters are estimated, and how wrong they may be.
 
+use crate::physics::NUMBERS;
+
 /// The parameters that can be estimated: all on which a motion depends.
 pub(super) const PARAMETERS: usize = 10;
 
@@ -16,7 +18,7 @@ pub(super) const PARAMETERS: usize = 10;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(C)] // for bindings/abi
+#[repr(C)] // for bindings/abi, whose derive.py copies the fields to other languages
 pub struct ParameterStd<S = f64> {
     /// Of the mass of link 1, kg.
     pub mass1: S,
@@ -28,8 +30,9 @@ pub struct ParameterStd<S = f64> {
     pub inertia1: S,
     /// Of the moment of inertia of link 2, kg m².
     pub inertia2: S,
-    /// Of the viscous friction of joint 1, N m s/rad. This and the following ones must be 0 in an
-    /// arithmetic without friction.
+    /// Of the viscous friction of joint 1, N m s/rad.
+    ///
+    /// This and the following ones must be 0 in an arithmetic without friction.
     pub damping1: S,
     /// Of the viscous friction of joint 2, N m s/rad.
     pub damping2: S,
@@ -51,8 +54,27 @@ impl<S: Copy> ParameterStd<S> {
 }
 
 /// These among the numbers of the parameters.
-pub(super) fn estimated<T>(numbers: [T; 21]) -> [T; PARAMETERS] {
+pub(super) fn estimated<T>(numbers: [T; NUMBERS]) -> [T; PARAMETERS] {
     let [length1, _, mass1, mass2, _, _, inertia1, inertia2, others @ ..] = numbers;
     let [.., viscous1, viscous2, coulomb1, coulomb2, rotor] = others;
     [mass1, mass2, length1, inertia1, inertia2, viscous1, viscous2, coulomb1, coulomb2, rotor]
+}
+
+/// What is known of a parameter. Covariances have its given deviation as their unit.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "S: serde::Serialize, [S; K]: serde::Serialize",
+        deserialize = "S: serde::Deserialize<'de>, [S; K]: serde::Deserialize<'de>"
+    ))
+)]
+pub(super) struct Parameter<S, const K: usize> {
+    pub(super) deviation: S,
+    /// The smallest and the largest number.
+    pub(super) limits: [S; 2],
+    /// The covariances with the state, and with each parameter.
+    pub(super) with_state: [S; 4],
+    pub(super) with_params: [S; K],
 }

@@ -10,7 +10,9 @@ use crate::physics::{Modeled, Params, State, plus_scaled, positions, wrap};
 
 /// The weights of what a plan costs: the sum of all terms, over all its steps, and of its end. A
 /// larger weight makes its term smaller, at the expense of the others: [a table of what each
-/// does](crate::guide::control#what-a-plan-costs).
+/// does](crate::guide::control#what-a-plan-costs). The defaults are those of [`Cost::new`]: u is the
+/// largest torque, and T² the inertia of the straight machine about the fixed joint, divided by the
+/// sum of the torque of gravity when it is level and u.
 ///
 /// ```
 /// use acrobot::Params;
@@ -25,30 +27,49 @@ use crate::physics::{Modeled, Params, State, plus_scaled, positions, wrap};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(C)] // for bindings/abi
+#[repr(C)] // for bindings/abi, whose derive.py copies the fields to other languages
 pub struct Cost<S = f64> {
     /// Q of xᵀ Q x, for the deviation x from the target, by rows: 1/(rad² s), 1/rad² and s/rad²;
-    /// symmetric and positive semidefinite.
+    /// symmetric and positive semidefinite. Default 0.
+    ///
+    /// Raised: the state is near the target for longer, and slower.
     pub q: [[S; 4]; 4],
-    /// The same of the state after the plan: 1/rad², s/rad² and s²/rad².
+    /// The same of the state after the plan: 1/rad², s/rad² and s²/rad². Default 0.
+    ///
+    /// Raised: the state after the plan is nearer the target.
     pub qf: [[S; 4]; 4],
-    /// Of 2 − 2 cos x, for the deviation x of each angle from the target: x² where it is small.
-    /// 1/s.
+    /// Of 2 − 2 cos x, for the deviation x of each angle from the target, 1/s: of x² where it is
+    /// small. Default 0.
+    ///
+    /// Raised: the same as `q`.
     pub angles: [S; 2],
     /// R: of the square of the torque's difference from that which holds the target, 1/((N m)² s).
+    /// Default 0.1 / (T u²).
+    ///
+    /// Raised: less torque, more time.
     pub torque: S,
-    /// Of the square of the torque's change from one step to the next, 1/(N m)².
+    /// Of the square of the torque's change from one step to the next, 1/(N m)². Default 0.
+    ///
+    /// Raised: a smoother torque.
     pub torque_change: S,
-    /// Of the absolute value of the motor's power, 1/J.
+    /// Of the absolute value of the motor's power, 1/J. Default 0.
+    ///
+    /// Raised: the motor does less work and brakes less.
     pub power: S,
-    /// Of the time that the tip is below `height`, 1/s.
+    /// Of the time that the tip is below `height`, 1/s. Default 0.4 / T.
+    ///
+    /// Raised: the tip is above `height` − `margin` earlier.
     pub below: S,
-    /// The height of the tip above the fixed joint, m, from which on `below` costs nothing.
+    /// The height of the tip above the fixed joint, m, from which on `below` costs nothing. Default
+    /// that of the target.
     pub height: S,
-    /// `below` costs half where the tip is so far below `height`, m; above 0.
+    /// `below` costs half where the tip is so far below `height`, m; above 0. Default a tenth of
+    /// both lengths.
     pub margin: S,
     /// Of ln(1 + e) for the state after the plan, where e is 1 at the border of the region in which
-    /// the regulator holds.
+    /// the regulator holds. Default 20.
+    ///
+    /// Raised: more plans end where the regulator holds.
     pub arrival: S,
 }
 

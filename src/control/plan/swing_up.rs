@@ -34,7 +34,8 @@ pub struct SwingUp<A: Arithmetic> {
     energy: A::Scalar,
     /// The gain that pumps energy, s/rad.
     pump: A::Scalar,
-    is_holding: bool,
+    /// Whether the regulator holds. Otherwise energy is pumped.
+    pub is_holding: bool,
 }
 
 impl<A: Arithmetic> SwingUp<A> {

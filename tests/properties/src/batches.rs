@@ -10,6 +10,8 @@ use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, Time
 use common::draws;
 use common::twins::{LEVELS, MODES, Twins};
 use proptest::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::given::{Range, Tested, action, holds, number, params, reset_bounds, state};
 
@@ -78,7 +80,7 @@ struct Model<A: Arithmetic, T: Task, const N: usize> {
     stored: Option<Stored<A, T>>,
 }
 
-impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
+impl<A: Tested, T: Task + Serialize + DeserializeOwned, const N: usize> Model<A, T, N> {
     fn new(len: usize, own_params: bool) -> Self {
         Self { twins: Twins::new(len, own_params, Autoreset::NextStep), own_params, stored: None }
     }
@@ -172,7 +174,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
 
 #[test]
 fn any_calls_in_any_order_equal_single_acrobots() {
-    fn check<A: Tested, T: Task, const N: usize>() {
+    fn check<A: Tested, T: Task + Serialize + DeserializeOwned, const N: usize>() {
         let calls = prop::collection::vec(call::<A>(), 0..40);
         holds(120, (1..=LEN, any::<bool>(), calls), |(len, own, calls)| {
             let mut model = Model::<A, T, N>::new(len, own);

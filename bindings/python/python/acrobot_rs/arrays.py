@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import math
+import operator
 import reprlib
 import warnings
 from collections.abc import Mapping
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ Seed = int | list[int | None] | tuple[int | None, ...] | None
 
 #: A Box, a reset and a policy have float32, which rounds other numbers with a warning.
 LARGEST = float(np.finfo(np.float32).max)
+#: The largest number of float64.
+MAX = float(np.finfo(np.float64).max)
 
 
 def must_be(name: str, rule: str, got: Any, error: type[Exception] = ValueError) -> Exception:
@@ -29,6 +32,8 @@ def must_be(name: str, rule: str, got: Any, error: type[Exception] = ValueError)
 
 def reset_bounds(options: Mapping[str, Any], bound: float) -> tuple[float, float]:
     """The bounds of initial states, rad and rad/s: the options, or ``-bound`` and ``bound``."""
+    if not isinstance(options, Mapping):
+        raise must_be("options", "a dict", reprlib.repr(options), TypeError)
     low, high = (
         float(numbers(name, "a number", options.get(name, default), ()))
         for name, default in (("low", -bound), ("high", bound))
@@ -70,10 +75,35 @@ def numbers(
     return array
 
 
-def integer(name: str, value: Any, low: int, high: int) -> int:
-    if not (isinstance(value, Integral) and low <= value <= high):
-        raise must_be(name, f"an integer from {low} to {high}", repr(value))
-    return int(value)
+def finite(name: str, rule: str, value: Any, shape: Any = (), largest: float = MAX) -> Any:
+    """As :func:`numbers`, in ``float64``: each is finite, and at most the largest."""
+    given = numbers(name, rule, value, shape)
+    is_valid = np.abs(given) <= np.float64(largest)  # false for NaN
+    if not is_valid.all():
+        index = tuple(np.argwhere(~is_valid)[0].tolist())
+        raise must_be(name, rule, f"{given[index]}{f' at {list(index)}' if index else ''}")
+    return given.astype(np.float64, copy=False)
+
+
+def float32(name: str, rule: str, value: Any, shape: tuple[int, ...] = ()) -> Any:
+    """As :func:`finite`, for what the native part has in ``float32``. A number or lists."""
+    rule = f"{rule}, in the range of float32"
+    given = finite(name, rule, value, shape, LARGEST)
+    if shape == () and given != 0 and np.float32(given) == 0:
+        raise must_be(name, rule, value)
+    return given.tolist()
+
+
+def integer(name: str, value: Any, low: int, high: float, error: Any = ValueError) -> int:
+    """An integer of Python or of NumPy, but neither ``True`` nor ``False``."""
+    try:
+        number = None if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        number = None
+    if number is None or not low <= number <= high:
+        rule = f"of at least {low}" if high == math.inf else f"from {low} to {high}"
+        raise must_be(name, f"an integer {rule}", repr(value), error)
+    return number
 
 
 def states_of(value: Any, num_envs: int) -> NDArray[np.float64]:
@@ -119,11 +149,12 @@ def seeds_of(
 
 def plain_seed(seed: Any) -> int | None:
     """A seed, also one of NumPy's integers, as Python's ``int``, which Gymnasium requires."""
-    if seed is None:
-        return None
-    if not isinstance(seed, Integral) or seed < 0:
-        raise must_be("seed", "an integer of at least 0", repr(seed), Error)
-    return int(seed)
+    return None if seed is None else integer("seed", seed, 0, math.inf, Error)
+
+
+def independent(self: Any) -> Any:
+    """A copy for ``copy.copy`` that shares no native state."""
+    return copy.deepcopy(self)
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

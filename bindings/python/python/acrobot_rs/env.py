@@ -11,7 +11,7 @@ from gymnasium.error import InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import BALANCE_BOUND, Acrobot
-from acrobot_rs.arrays import must_be, numbers, plain_seed, read_only, reset_bounds
+from acrobot_rs.arrays import LARGEST, finite, must_be, numbers, plain_seed, read_only, reset_bounds
 from acrobot_rs.parameters import Parameters
 
 
@@ -99,10 +99,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         given = None
         if "state" in options:
             rule = "four finite numbers in the range of float32"
-            given = numbers("state", rule, options["state"], (4,))
-            with np.errstate(over="ignore"):
-                if not np.isfinite(given.astype(np.float32)).all():
-                    raise must_be("state", rule, given)
+            given = finite("state", rule, options["state"], (4,), LARGEST)
         super().reset(seed=seed)
         return self._begin(low, high, given), {}
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import copy
 import dataclasses
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from gymnasium import logger, spaces
 
 from acrobot_rs._native import BOUND, Acrobot, Batch
-from acrobot_rs.arrays import LARGEST, must_be
+from acrobot_rs.arrays import LARGEST, independent, must_be
 
 
 @dataclasses.dataclass(frozen=True)
@@ -25,6 +24,8 @@ class Uniform:
     >>> envs = acrobot_rs.AcrobotVectorEnv(1024, LINK_MASS_1=acrobot_rs.Uniform(0.8, 1.2))
     """
 
+    _KIND: ClassVar = "uniform"
+
     low: Any
     high: Any
 
@@ -32,6 +33,8 @@ class Uniform:
 @dataclasses.dataclass(frozen=True)
 class LogUniform:
     """A parameter whose logarithm each reset draws uniformly. ``low`` is above 0."""
+
+    _KIND: ClassVar = "log_uniform"
 
     low: float
     high: float
@@ -43,6 +46,8 @@ class Normal:
 
     ``mean`` and ``std`` are those before the truncation. ``mean`` is between the bounds.
     """
+
+    _KIND: ClassVar = "normal"
 
     mean: float
     std: float
@@ -58,33 +63,59 @@ class Parameters:
 
     Set them as arguments, on an environment or in a subclass, whose parameters a new environment
     copies. An environment checks a value immediately, which acts from the next step. The spaces
-    follow.
+    follow. A single environment may have any number of torques.
     """
 
-    LINK_LENGTH_1: Any = 1.0  #: m; above 0
-    LINK_LENGTH_2: Any = 1.0  #: m; above 0; changes pictures only
-    LINK_MASS_1: Any = 1.0  #: kg; above 0
-    LINK_MASS_2: Any = 1.0  #: kg; above 0
-    LINK_COM_POS_1: Any = 0.5  #: centre of mass from the joint, m; 0 or more
-    LINK_COM_POS_2: Any = 0.5  #: centre of mass from the joint, m; 0 or more
-    LINK_MOI: Any = 1.0  #: moment of inertia of each link about its centre, kg m²; 0 or more
-    LINK_MOI_1: Any = None  #: of link 1, kg m²; 0 or more; ``None``: ``LINK_MOI``
-    LINK_MOI_2: Any = None  #: of link 2, kg m²; 0 or more; ``None``: ``LINK_MOI``
-    gravity: Any = 9.8  #: acceleration, downwards, m/s²; finite; Gymnasium's cannot change
-    dt: Any = 0.2  #: duration of a step, s; above 0
-    MAX_VEL_1: Any = 4 * math.pi  #: of |θ̇1| after a step, rad/s; at least 1.2e-38; may be inf
-    MAX_VEL_2: Any = 9 * math.pi  #: of |θ̇2| after a step, rad/s; at least 1.2e-38; may be inf
-    #: Torques of the actions 0, 1 and 2, N m; finite. A single environment may have others.
+    # derive.py writes the parameters.
+    #: Length of link 1, m; above 0.
+    LINK_LENGTH_1: Any = 1.0
+    #: Length of link 2, m; above 0. Only the tip's height and drawings depend on it.
+    LINK_LENGTH_2: Any = 1.0
+    #: Mass of link 1, kg; above 0.
+    LINK_MASS_1: Any = 1.0
+    #: Mass of link 2, kg; above 0.
+    LINK_MASS_2: Any = 1.0
+    #: Distance of link 1's centre of mass from its joint, m; 0 or more.
+    LINK_COM_POS_1: Any = 0.5
+    #: Distance of link 2's centre of mass from its joint, m; 0 or more.
+    LINK_COM_POS_2: Any = 0.5
+    LINK_MOI: Any = 1.0  #: of both links, kg m²; 0 or more
+    #: Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
+    #: centre of mass is on the joint. ``None``: ``LINK_MOI``.
+    LINK_MOI_1: Any = None
+    #: Moment of inertia of link 2 about its centre of mass, kg m²; as ``LINK_MOI_1``. ``None``:
+    #: ``LINK_MOI``.
+    LINK_MOI_2: Any = None
+    #: Acceleration of gravity, m/s², downwards; finite, 0 for none.
+    gravity: Any = 9.8
+    #: Duration of one step, s; above 0.
+    dt: Any = 0.2
+    #: Bound of |θ̇1| after a step, rad/s; at least 1.2e-38. Infinity, for none, is stored as
+    #: 3.4e38, the largest number in single precision, which observations have.
+    MAX_VEL_1: Any = 4 * math.pi
+    #: Bound of |θ̇2| after a step, rad/s; as ``MAX_VEL_1``.
+    MAX_VEL_2: Any = 9 * math.pi
+    #: Torques of the three actions, N m, in the order of their numbers; finite.
     AVAIL_TORQUE: Any = (-1.0, 0.0, 1.0)
-    #: Each step adds a uniform draw within ± this to the torque, N m; 0 or more. 0 draws nothing.
+    #: Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
+    #: torque; 0 draws nothing.
     torque_noise_max: Any = 0.0
-    #: The equations of motion: of Sutton and Barto's book, or as printed in the 1996 paper.
+    #: Viscous friction of the fixed joint, which resists θ̇1 with a torque in proportion to it,
+    #: N m s/rad; 0 or more.
+    DAMPING_1: Any = 0.0
+    #: Viscous friction of the elbow, which resists θ̇2; as ``DAMPING_1``.
+    DAMPING_2: Any = 0.0
+    #: Coulomb friction of the fixed joint: its torque as soon as the joint turns, N m; 0 or more.
+    COULOMB_1: Any = 0.0
+    #: Coulomb friction of the elbow; as ``COULOMB_1``.
+    COULOMB_2: Any = 0.0
+    #: What a geared rotor in the elbow takes from the coupling of the links, kg m²; finite, and so
+    #: small that the mass matrix is positive definite. A rotor of moment of inertia J behind a gear
+    #: g adds (g + 1)² J to ``LINK_MOI_1``, g² J to ``LINK_MOI_2``, and (g + 1) g J here.
+    ROTOR: Any = 0.0
+    #: The equations of motion: of Sutton and Barto's book, or of the paper of 1996 (NIPS 8).
     book_or_nips: Any = "book"
-    DAMPING_1: Any = 0.0  #: viscous, of the fixed joint, N m s/rad; 0 or more
-    DAMPING_2: Any = 0.0  #: viscous, of the joint between the links, N m s/rad; 0 or more
-    COULOMB_1: Any = 0.0  #: Coulomb friction of the fixed joint, N m; 0 or more
-    COULOMB_2: Any = 0.0  #: Coulomb friction of the joint between the links, N m; 0 or more
-    ROTOR: Any = 0.0  #: what a geared rotor takes from the links' coupling, kg m²; finite
+    # The end of the parameters.
 
     metadata: dict[str, Any]
     spec: Any
@@ -191,9 +222,7 @@ class Parameters:
                         new.seed(int(current.np_random.integers(2**32)))
                         super().__setattr__(space, new)
 
-    def __copy__(self) -> Parameters:
-        """As ``copy.deepcopy``: two objects with the same states would be no copies."""
-        return copy.deepcopy(self)
+    __copy__ = independent
 
     def _warn_of_no_render_mode(self) -> None:
         what = 'it was made without a render mode, such as render_mode="rgb_array"'

@@ -94,12 +94,13 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
                 rule = "False with gymnasium_episodes, which computes in float64"
                 raise must_be("float64", rule, True)
             arrays.warn_of_other_sines()
-        mode = AutoresetMode(autoreset_mode)
         arithmetic = "host" if gymnasium_episodes else "float64" if float64 else "float32"
+        mode = getattr(autoreset_mode, "value", autoreset_mode)
         native = Batch(
-            *(num_envs, self.np_random_seed, limit, mode.value, (self._TASK, arithmetic)),
+            *(num_envs, self.np_random_seed, limit, str(mode), (self._TASK, arithmetic)),
             *(self._CONTINUOUS, threads),
         )
+        mode = AutoresetMode(mode)
         self.autoreset_mode = mode
         self.metadata = {**self.metadata, "autoreset_mode": mode}
         self.num_envs = num_envs

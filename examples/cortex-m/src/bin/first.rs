@@ -15,8 +15,9 @@ use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
 use semihosting::{println, process};
 
-static ACROBOT: Mutex<RefCell<TimeLimit<Acrobot<Fast>>>> =
-    Mutex::new(RefCell::new(TimeLimit::new(Acrobot::hanging(Pcg64::new(42)), Gymnasium::MAX_STEPS)));
+static ACROBOT: Mutex<RefCell<TimeLimit<Acrobot<Fast>>>> = Mutex::new(RefCell::new(
+    TimeLimit::new(Acrobot::hanging(Pcg64::new(42)), Gymnasium::MAX_STEPS),
+));
 
 /// 0.2 s of the 25 MHz clock of QEMU's mps2-an386. SysTick counts to 2²⁴ at most.
 const PERIOD: u32 = 5_000_000;

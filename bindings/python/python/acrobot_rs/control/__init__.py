@@ -20,6 +20,7 @@ from acrobot_rs.control.model import (
     mass_matrix,
     regulator,
     simulate,
+    tvlqr,
 )
 from acrobot_rs.control.plan import Feedback, Plan, Planner, Region, SwingUp
 
@@ -45,4 +46,5 @@ __all__ = [
     "mass_matrix",
     "regulator",
     "simulate",
+    "tvlqr",
 ]

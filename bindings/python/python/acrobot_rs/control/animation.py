@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from acrobot_rs.arrays import finite
 from acrobot_rs.control.model import Env, acrobot_of
 
 
@@ -17,7 +18,9 @@ class Animation:
         acrobot = acrobot_of(env)
         dt, lengths = acrobot.dt, (acrobot.LINK_LENGTH_1, acrobot.LINK_LENGTH_2)
         steps = max(1, round(0.04 / dt))  # of a frame; up to 25 frames a second
-        angles = np.unwrap(np.reshape(states, (-1, 4))[:, :2], axis=0)[::steps]
+        rule = "finite numbers of shape (n, 4), rad and rad/s"
+        given = finite("states", rule, states, (np.size(states) // 4, 4))
+        angles = np.unwrap(given[:, :2], axis=0)[::steps]
         seconds = (len(angles) - 1) * steps * dt
         first, second = (
             '<animateTransform attributeName="transform" type="rotate" repeatCount="indefinite" '

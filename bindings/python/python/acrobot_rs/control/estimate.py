@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,13 +11,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from acrobot_rs import _native
-from acrobot_rs.arrays import must_be, numbers
+from acrobot_rs.arrays import finite, independent, must_be
 from acrobot_rs.control.model import Env, Floats, acrobot_of
 
-#: The parameters that an estimator can find, in the order of the native part.
+#: The parameters that an estimator can find, in the order of the native part: derive.py writes
+#: them.
 _ESTIMATED = (
-    *("LINK_MASS_1", "LINK_MASS_2", "LINK_LENGTH_1", "LINK_MOI_1", "LINK_MOI_2"),
-    *("DAMPING_1", "DAMPING_2", "COULOMB_1", "COULOMB_2", "ROTOR"),
+    "LINK_MASS_1",
+    "LINK_MASS_2",
+    "LINK_LENGTH_1",
+    "LINK_MOI_1",
+    "LINK_MOI_2",
+    "DAMPING_1",
+    "DAMPING_2",
+    "COULOMB_1",
+    "COULOMB_2",
+    "ROTOR",
 )
 
 
@@ -31,6 +41,8 @@ class Estimator:
     In each ``dt`` call :meth:`correct`, decide, and call :meth:`predict`.
     """
 
+    __copy__ = independent
+
     def __init__(
         self,
         env: Env = None,
@@ -39,20 +51,26 @@ class Estimator:
         torque_std: float,
         parameter_std: Mapping[str, float] | None = None,
     ) -> None:
-        named = parameter_std or {}
-        if unknown := named.keys() - set(_ESTIMATED):
-            raise must_be("parameter_std", f"of {', '.join(_ESTIMATED)}", sorted(unknown))
-        given = [named.get(name, 0.0) for name in _ESTIMATED]
-        self._native = _native.Estimator(acrobot_of(env)._native, angle_std, torque_std, given)
+        named = {} if parameter_std is None else parameter_std
+        if not isinstance(named, Mapping) or named.keys() - set(_ESTIMATED):
+            rule = f"a dict of {', '.join(_ESTIMATED)}"
+            raise must_be("parameter_std", rule, repr(parameter_std))
+        rule, known = "a finite number of its unit, at least 0", dict.fromkeys(_ESTIMATED, 0.0)
+        given = [
+            finite(f"parameter_std[{x!r}]", rule, std) for x, std in {**known, **named}.items()
+        ]
+        angle = finite("angle_std", "a number of rad, above 0 and at most 2", angle_std)
+        torque = finite("torque_std", "a finite number of N m above 0", torque_std)
+        self._native = _native.Estimator(acrobot_of(env)._native, angle, torque, given)
 
     def correct(self, angles: ArrayLike) -> Floats:
         """Correct the estimate by measured theta1 and theta2, rad. Return the state."""
-        measured = numbers("angles", "two numbers", angles, (2,)).tolist()
+        measured = finite("angles", "two finite numbers of rad", angles, (2,)).tolist()
         return np.array(self._native.correct(measured))
 
     def predict(self, torque: float) -> None:
         """Predict the state after one ``dt`` under a torque, N m."""
-        self._native.predict(torque)
+        self._native.predict(finite("torque", "a finite number of N m", torque))
 
     @property
     def state_std(self) -> Floats | None:
@@ -90,12 +108,17 @@ def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env
     ``dt``, gravity and the centres of mass; its lengths should be about right.
     """
     recordings = []
+    for name, given in (("angles", angles), ("torques", torques)):
+        if not (isinstance(given, Sequence | np.ndarray) and len(given) == len(angles)):
+            raise must_be(name, "a list of as many arrays", reprlib.repr(given), TypeError)
     for angle, torque in zip(angles, torques, strict=True):
-        columns = np.asarray(torque, np.float64)
+        columns = finite("torques", "finite numbers of N m", torque, None)
         if columns.ndim == 1:
             columns = np.column_stack([np.zeros_like(columns), columns])
-        rule = f"an array of shape {columns.shape}, as the torques have"
-        angle = numbers("angles", rule, angle, columns.shape)
+        if columns.ndim != 2 or columns.shape[1] != 2:
+            raise must_be("torques", "arrays of shape (n,) or (n, 2)", columns.shape)
+        rule = f"finite numbers of shape {columns.shape}, rad, as many as torques"
+        angle = finite("angles", rule, angle, columns.shape)
         recordings.append(np.column_stack([angle, columns]).tolist())
     params, found, rank_deficiency = _native.identify(acrobot_of(env)._native, recordings)
     values, std_errors, weakest = ({name: row[i] for name, row in found} for i in range(3))

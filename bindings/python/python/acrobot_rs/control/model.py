@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import _native
-from acrobot_rs.arrays import must_be, numbers
+from acrobot_rs.arrays import finite, must_be
 from acrobot_rs.env import AcrobotEnv
 
 Env = gymnasium.Env[Any, Any] | None
@@ -74,6 +74,17 @@ def dlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
     return rows[..., :1, :], rows[..., 1:, :]
 
 
+def tvlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike, Qf: ArrayLike) -> Pair:
+    """The linear-quadratic regulator of ``n`` steps, each with its own model.
+
+    A has the shape ``(..., n, 4, 4)`` and B ``(..., n, 4, 1)``. Qf weights the
+    state after the last step. Returns K of each step, ``(..., n, 1, 4)``, and P before the first
+    one, ``(..., 4, 4)``: xᵀ P x is the cost of all steps.
+    """
+    rows = _call("tvlqr", (4, 4), None, A=A, B=B, Q=Q, Qf=Qf, R=R)
+    return rows[..., 4:, None, :], rows[..., :4, :]
+
+
 def regulator(
     Q: ArrayLike, R: ArrayLike, state: ArrayLike = UPRIGHT, torque: ArrayLike = 0.0, env: Env = None
 ) -> Pair:
@@ -88,25 +99,41 @@ def simulate(state: ArrayLike, torques: ArrayLike, env: Env = None) -> Floats:
     They are bit-identical to those of the environment, but nothing clips the torques or ends the
     simulation.
     """
-    states = 1 + math.prod(np.shape(torques)[-1:])
-    return _call("simulate", (states, 4), env, state=state, torques=torques)
+    return _call("simulate", (1, 4), env, state=state, torques=torques)
 
 
 _GYMNASIUM = AcrobotEnv()
-#: The last axes of inputs. Others have 4, and ``torques`` any number.
-_AXES = {"torque": (), "accelerations": (2,), "A": (4, 4), "B": (4, 1), "Q": (4, 4), "R": (1, 1)}
+#: The last axes of inputs, and what their numbers are.
+_STATE = (4,), "finite numbers, rad and rad/s"
+_MATRIX = (4, 4), "finite numbers"
+_INPUTS = {
+    **{"state": _STATE, "target": _STATE, "A": _MATRIX, "Q": _MATRIX, "Qf": _MATRIX},
+    **{"B": ((4, 1), "finite numbers"), "R": ((1, 1), "finite numbers")},
+    **{"torque": ((), "a finite number of N m"), "torques": ((), "finite numbers of N m")},
+    "accelerations": ((2,), "finite numbers of rad/s²"),
+}
+#: The inputs that have a first axis of ``n`` steps.
+_OF_STEPS = {"simulate": ("torques",), "tvlqr": ("A", "B")}
 
 
-def acrobot_of(env: Env) -> Any:
-    return _GYMNASIUM if env is None else env.unwrapped
+def acrobot_of(env: Env) -> AcrobotEnv:
+    acrobot = _GYMNASIUM if env is None else getattr(env, "unwrapped", env)
+    if not isinstance(acrobot, AcrobotEnv):
+        rule = "a single environment of acrobot_rs, such as acrobot_rs.AcrobotEnv()"
+        raise must_be("env", rule, repr(env), TypeError)
+    return acrobot
 
 
 def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) -> Floats:
-    """Call a native function for each state. A result has this shape."""
-    parts = []
-    for name, value in inputs.items():
-        array = numbers(name, "numbers", value, None)
-        axes = array.shape[-1:] if name == "torques" else _AXES.get(name, (4,))
+    """Call a native function for each state. A result has this shape, and a row for each step."""
+    arrays = {name: finite(name, _INPUTS[name][1], x, None) for name, x in inputs.items()}
+    names, steps, parts = _OF_STEPS.get(function, ()), 0, []
+    for name in names[:1]:
+        axes = _INPUTS[name][0]
+        steps = math.prod(arrays[name].shape[: arrays[name].ndim - len(axes)][-1:])
+        shape = (shape[0] + steps, *shape[1:])
+    for name, array in arrays.items():
+        axes = (steps,) * (name in names) + _INPUTS[name][0]
         if array.ndim < len(axes) and array.size == math.prod(axes):
             array = array.reshape(axes)  # a number or a vector for a matrix
         others = array.shape[: array.ndim - len(axes)]
@@ -114,7 +141,11 @@ def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) 
             rule = f"an array of shape (..., {', '.join(map(str, axes))})"
             raise must_be(name, rule, array.shape)
         parts.append(array.reshape(*others, math.prod(axes)))
-    others = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
+    try:
+        others = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
+    except ValueError:
+        shapes = [array.shape for array in arrays.values()]
+        raise must_be(", ".join(arrays), "arrays that broadcast", shapes) from None
     rows = np.concatenate([np.broadcast_to(x, (*others, x.shape[-1])) for x in parts], axis=-1)
-    rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]), np.float64)
+    rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]))
     return _native.compute(function, acrobot_of(env)._native, rows).reshape((*others, *shape))

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import _native
-from acrobot_rs.arrays import integer, must_be, numbers
+from acrobot_rs.arrays import float32, independent, integer, must_be, numbers
 from acrobot_rs.control.model import Env, acrobot_of
 
 
@@ -31,7 +32,7 @@ class Feedback(NamedTuple):
     reach: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Plan:
     """Steps of ``dt``, s, and the feedback after them. ``plan[10:]`` is the plan after ten steps.
 
@@ -44,19 +45,32 @@ class Plan:
     dt: float
     after: Feedback
 
+    def __len__(self) -> int:
+        """The number of steps."""
+        return len(self.torques)
+
+    def __eq__(self, other: object) -> bool:
+        def values(plan: Plan) -> tuple[Any, ...]:
+            return plan._rows().tolist(), plan.dt, plan.after
+
+        return isinstance(other, Plan) and values(self) == values(other)
+
     def __getitem__(self, steps: slice) -> Plan:
+        if not isinstance(steps, slice) or steps.step not in (None, 1):
+            rule = "a slice without gaps, such as plan[10:]"
+            raise must_be("the index of a plan", rule, repr(steps), TypeError)
         states, torques, gains = self.states[steps], self.torques[steps], self.gains[steps]
         return replace(self, states=states, torques=torques, gains=gains)
 
     def torque(self, step: int, state: ArrayLike) -> float:
         """The torque at a step, counted from 0, or after the plan, N m. It is not limited."""
         knot = None
-        if integer("step", step, 0, 2**63 - 1) < len(self.torques):
+        if integer("step", step, 0, 2**63 - 1) < len(self):
             knot = [*self.states[step], self.torques[step], *self.gains[step]]
         return _native.plan_torque(knot, self.after, _four(state))
 
-    def _rows(self) -> list[list[float]]:
-        return np.column_stack([self.states, self.torques, self.gains]).tolist()
+    def _rows(self) -> NDArray[np.float32]:
+        return np.column_stack([self.states, self.torques, self.gains])
 
 
 class Planner:
@@ -87,14 +101,23 @@ class Planner:
         arrival: float | None = None,
         velocity_clamp: bool = False,
     ) -> None:
-        weights = {
-            **{"q": _weights("q", q), "qf": _weights("qf", qf), "angles": angles},
-            **{"torque": torque, "torque_change": torque_change, "power": power},
-            **{"below": below, "height": height, "margin": margin, "arrival": arrival},
-        }
-        acrobot = acrobot_of(env)
-        native = acrobot._native
-        self._native = _native.Planner(native, max_torque, elbow, velocity_clamp, weights)
+        matrix = "numbers of shape (4, 4) or (4,)"
+        weights = [
+            *_weights("q", q, matrix, (4, 4)),
+            *_weights("qf", qf, matrix, (4, 4)),
+            *_weights("angles", angles, "two numbers per s", (2,)),
+            *_weights("torque", torque, "a number per (N m)² s"),
+            *_weights("torque_change", torque_change, "a number per (N m)²"),
+            *_weights("power", power, "a number per J"),
+            *_weights("below", below, "a number per s"),
+            *_weights("height", height, "a number of m"),
+            *_weights("margin", margin, "a number of m"),
+            *_weights("arrival", arrival, "a number"),
+        ]
+        acrobot, bent = acrobot_of(env), float32("elbow", "a number of rad", elbow)
+        clamp = bool(numbers("velocity_clamp", "True or False", velocity_clamp, (), "b"))
+        arguments = _largest(max_torque), bent, clamp, weights
+        self._native = _native.Planner(acrobot._native, *arguments)
         target, held, moving, resting, reach = self._native.after()
         self._after = Feedback(target, held, Region(*moving), Region(*resting), reach)
         self._dt = acrobot.dt
@@ -112,30 +135,33 @@ class Planner:
         seed: int = 0,
         progress: Callable[[int], object] | None = None,
     ) -> Plan:
-        """A plan of at most ``steps``, up to 65,535, after which its feedback holds the target.
+        """A plan of at most ``steps``, from 1 to 65,535, after which its feedback holds the target.
 
-        A seed gives the same plan everywhere, also in Rust. After each 40 tries ``progress`` is
-        called with the number of all so far, and Ctrl-C acts. A ``RuntimeError`` says that no try
-        found a plan.
+        A seed, an integer from 0 of any size, gives the same plan everywhere, also in Rust. There
+        are 1 to 2^32 - 1 ``tries``. After each 40 of them ``progress`` is called with the number of
+        all so far, and Ctrl-C acts. A ``RuntimeError`` says that no try found a plan.
         """
-        steps = integer("steps", steps, 0, 2**16 - 1)
-        tries, seed = integer("tries", tries, 0, 2**32 - 1), integer("seed", seed, 0, 2**64 - 1)
+        steps, tries = integer("steps", steps, 1, 2**16 - 1), integer("tries", tries, 1, 2**32 - 1)
+        seed = integer("seed", seed, 0, math.inf)
+        if not (progress is None or callable(progress)):
+            raise must_be("progress", "a function or None", repr(progress), TypeError)
         return self._plan(self._native.plan(_four(state), steps, tries, seed, progress))
 
     def improve(self, state: ArrayLike, plan: Plan, iterations: int = 150) -> tuple[Plan, float]:
         """Improve a plan, from a state on. Return the new one, and what it costs."""
         iterations = integer("iterations", iterations, 0, 2**32 - 1)
-        rows, cost = self._native.improve(_four(state), plan._rows(), iterations)
+        rows, cost = self._native.improve(_four(state), _rows("plan", plan), iterations)
         return self._plan(rows), cost
 
     def improve_each(
         self, states: ArrayLike, plans: Sequence[Plan], iterations: int = 150
     ) -> tuple[list[Plan], NDArray[np.float32]]:
         """Improve many plans, each from its state. A cost is infinite where numbers overflow."""
-        shape = len(plans), 4
-        given = numbers("states", f"numbers of shape {shape}", states, shape).tolist()
+        if not isinstance(plans, Sequence):
+            raise must_be("plans", "a list of plans", repr(plans), TypeError)
+        rows, shape = [_rows("plans", plan) for plan in plans], (len(plans), 4)
+        given = float32("states", f"numbers of shape {shape}, rad and rad/s", states, shape)
         iterations = integer("iterations", iterations, 0, 2**32 - 1)
-        rows = [plan._rows() for plan in plans]
         rows, costs = self._native.improve_each(given, rows, iterations)
         return [self._plan(each) for each in rows], np.array(costs, np.float32)
 
@@ -144,26 +170,36 @@ class Planner:
         return Plan(array[:, :4], array[:, 4], array[:, 5:], self._dt, self._after)
 
 
-def _weights(name: str, value: ArrayLike | None) -> list[list[float]] | None:
-    """A matrix, or that with a diagonal."""
+def _weights(name: str, value: Any, rule: str, shape: tuple[int, ...] = ()) -> list[float | None]:
+    """The elements of a weight, of a matrix also from its diagonal. ``None`` for the default."""
     if value is None:
-        return None
-    rule = "numbers of shape (4, 4) or (4,)"
-    array = numbers(name, rule, value, None)
-    if array.shape not in ((4, 4), (4,)):
-        raise must_be(name, rule, array.shape)
-    return (np.diag(array) if array.ndim == 1 else array).tolist()
+        return [None] * math.prod(shape)
+    is_diagonal = shape == (4, 4) and numbers(name, rule, value, None).shape == (4,)
+    given = float32(name, rule, value, (4,) if is_diagonal else shape)
+    return np.ravel(np.diag(given) if is_diagonal else given).tolist()
+
+
+def _largest(max_torque: float) -> float:
+    return float32("max_torque", "a number of N m above 0", max_torque)
 
 
 def _four(state: ArrayLike) -> list[float]:
-    return numbers("state", "four numbers", state, (4,)).tolist()
+    return float32("state", "four numbers, rad and rad/s", state, (4,))
+
+
+def _rows(name: str, plan: Plan) -> list[list[float]]:
+    if not isinstance(plan, Plan):
+        raise must_be(name, "a Plan, such as Planner.plan returns", repr(plan), TypeError)
+    return float32(name, "a Plan of finite numbers", plan._rows(), (len(plan), 9))
 
 
 class SwingUp:
     """Swings up without a plan, in ``float32``: pumps energy, and holds once it can."""
 
+    __copy__ = independent
+
     def __init__(self, max_torque: float, env: Env = None) -> None:
-        self._native = _native.SwingUp(acrobot_of(env)._native, max_torque)
+        self._native = _native.SwingUp(acrobot_of(env)._native, _largest(max_torque))
 
     def torque(self, state: ArrayLike) -> float:
         """The torque, N m, at most the largest. Call it at each ``dt``."""

@@ -1,0 +1,360 @@
+// Calls and their results, which Rust has written: tests/data/results.jsonl.
+
+#include "check.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define KNOTS 80
+#define ACROBOTS 5
+
+// The results of the call that have not been compared yet.
+static const double *expected, *expected_end;
+static const char *called;
+
+static void begin(const char *call, const double *result, size_t count)
+{
+    called = call;
+    expected = result;
+    expected_end = result + count;
+}
+
+static void end(void)
+{
+    if (expected != expected_end) {
+        print(called);
+        print(": not the result of Rust\n");
+        failures++;
+    }
+}
+
+static void compare(double found)
+{
+    // After the first difference `end` finds that some are left.
+    if (expected != NULL && expected < expected_end && *expected == found) {
+        expected++;
+    } else {
+        expected = NULL;
+    }
+}
+
+static void compare_floats(const void *found, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        float number;
+        __builtin_memcpy(&number, (const float *)found + i, sizeof number);
+        compare((double)number);
+    }
+}
+
+#define COMPARE(value) compare_floats(&(value), sizeof(value) / 4)
+// All numbers, without the dynamics.
+#define COMPARE_PARAMS(params) compare_floats(&(params), 21)
+
+static void to_floats(void *to, const double *numbers, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const float number = (float)numbers[i];
+        __builtin_memcpy((float *)to + i, &number, sizeof number);
+    }
+}
+
+static acrobot_params_t machine(const double *numbers)
+{
+    acrobot_params_t params;
+    params.dynamics = ACROBOT_DYNAMICS_BOOK;
+    to_floats(&params, numbers, 21);
+    return params;
+}
+
+static acrobot_state_t state_of(const double *numbers)
+{
+    acrobot_state_t state;
+    to_floats(&state, numbers, 4);
+    return state;
+}
+
+static const acrobot_draws_t *draws_of(const double *rows)
+{
+    static acrobot_draws_t draws;
+    acrobot_draw_t *draw = (acrobot_draw_t *)(void *)&draws;
+    for (int i = 0; i < 21; i++) {
+        draw[i].kind = (int)rows[5 * i];
+        to_floats(&draw[i].low, rows + 5 * i + 1, 4);
+    }
+    return &draws;
+}
+
+static const acrobot_reset_options_t *seeded(const double *seed, size_t words)
+{
+    static uint32_t of_seed[4];
+    static acrobot_reset_options_t options;
+    for (size_t i = 0; i < words; i++) {
+        of_seed[i] = (uint32_t)seed[i];
+    }
+    options.seed = of_seed;
+    options.seed_words = words;
+    return &options;
+}
+
+#ifdef ACROBOT_HAS_SNAPSHOTS
+static uint8_t bytes[2048];
+static size_t length;
+
+static void compare_snapshot(acrobot_status_t status, const double *snapshot, size_t size)
+{
+    CHECK(status == ACROBOT_OK && length == size);
+    for (size_t i = 0; i < size; i++) {
+        CHECK(bytes[i] == (uint8_t)snapshot[i]);
+    }
+}
+#define SNAPSHOT(save, holder) \
+    compare_snapshot(save(holder, bytes, sizeof bytes, &length), snapshot, size)
+#else
+#define SNAPSHOT(save, holder) (void)snapshot, (void)size
+#endif
+
+#define episode() \
+    replay_episode((int)task, seeded(seed, COUNT(seed)), draws_of(draws), torques, \
+                   COUNT(torques), snapshot, COUNT(snapshot))
+static void replay_episode(int task, const acrobot_reset_options_t *options,
+                           const acrobot_draws_t *draws, const double *torques, size_t steps,
+                           const double *snapshot, size_t size)
+{
+    acrobot_t acrobot;
+    acrobot_params_t params;
+    acrobot_step_t step;
+    ACCEPTED(acrobot_init_task(&acrobot, task, 0, NULL));
+    ACCEPTED(acrobot_reset_with(&acrobot, options, NULL, NULL));
+    ACCEPTED(acrobot_draw_params(&acrobot, draws, NULL));
+    ACCEPTED(acrobot_params(&acrobot, &params));
+    COMPARE_PARAMS(params);
+    for (size_t i = 0; i < steps; i++) {
+        ACCEPTED(acrobot_step_torque(&acrobot, (float)torques[i], &step, NULL));
+        COMPARE(step.observation);
+        COMPARE(step.reward);
+    }
+    SNAPSHOT(acrobot_save, &acrobot);
+}
+
+#define batch() \
+    CHECK(count == ACROBOTS); \
+    replay_batch((int)task, seeded(seed, COUNT(seed)), draws_of(draws), (uint32_t)max_steps, \
+                 torques, COUNT(torques), snapshot, COUNT(snapshot))
+static void replay_batch(int task, const acrobot_reset_options_t *options,
+                         const acrobot_draws_t *draws, uint32_t max_steps, const double *torques,
+                         size_t count, const double *snapshot, size_t size)
+{
+    ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_OWN_SIZE(ACROBOTS)];
+    acrobot_batch_t *batch;
+    float rewards[ACROBOTS], inputs[ACROBOTS];
+    bool terminated[ACROBOTS], truncated[ACROBOTS];
+    acrobot_observation_t rows[ACROBOTS];
+    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL};
+    ACCEPTED(acrobot_batch_init(memory, sizeof memory, ACROBOTS, task, true, 0, &batch));
+    ACCEPTED(acrobot_batch_set_draws(batch, draws, NULL));
+    ACCEPTED(acrobot_batch_set_max_steps(batch, max_steps, NULL));
+    ACCEPTED(acrobot_batch_set_autoreset(batch, ACROBOT_AUTORESET_SAME_STEP, NULL));
+    ACCEPTED(acrobot_batch_reset_with(batch, options, NULL));
+    for (size_t i = 0; i < count; i += ACROBOTS) {
+        to_floats(inputs, torques + i, ACROBOTS);
+        ACCEPTED(acrobot_batch_step_torque(batch, inputs, &results, ACROBOTS));
+        COMPARE(rewards);
+        COMPARE(rows);
+    }
+    SNAPSHOT(acrobot_batch_save, batch);
+}
+
+// A result of parameters and a state.
+#define OF_MACHINE(type, function, ...) \
+    const acrobot_params_t machine_ = machine(params); \
+    const acrobot_state_t state_ = state_of(state); \
+    type found; \
+    ACCEPTED(function(&machine_, &state_, __VA_ARGS__, NULL)); \
+    COMPARE(found)
+#define derivative() OF_MACHINE(acrobot_rates_t, acrobot_derivative, (float)torque, &found)
+#define linearize() OF_MACHINE(acrobot_linear_model_t, acrobot_linearize, (float)torque, &found)
+#define linearize_step() \
+    OF_MACHINE(acrobot_step_model_t, acrobot_linearize_step, (float)torque, &found)
+#define mass_matrix() \
+    (void)torque; \
+    typedef float matrix[2][2]; \
+    OF_MACHINE(matrix, acrobot_mass_matrix, &found)
+#define inverse_dynamics() \
+    const acrobot_params_t machine_ = machine(params); \
+    const acrobot_state_t state_ = state_of(state); \
+    acrobot_forces_t found; \
+    (void)torque; \
+    ACCEPTED(acrobot_inverse_dynamics(&machine_, &state_, (float)accelerations[0], \
+                                      (float)accelerations[1], &found, NULL)); \
+    COMPARE(found.torques)
+#define deviation() \
+    const acrobot_state_t state_ = state_of(state), target_ = state_of(target); \
+    acrobot_state_t found; \
+    (void)torque, (void)params; \
+    ACCEPTED(acrobot_deviation_from(&state_, &target_, &found, NULL)); \
+    COMPARE(found)
+#define energy() \
+    const acrobot_params_t machine_ = machine(params); \
+    const acrobot_state_t state_ = state_of(state); \
+    acrobot_t acrobot; \
+    float found; \
+    (void)torque; \
+    ACCEPTED(acrobot_init(&acrobot, 0)); \
+    ACCEPTED(acrobot_set_params(&acrobot, &machine_, NULL)); \
+    ACCEPTED(acrobot_set_state(&acrobot, &state_, NULL)); \
+    ACCEPTED(acrobot_energy(&acrobot, &found)); \
+    COMPARE(found)
+
+// Regulators, about an equilibrium.
+#define REGULATOR(kind) \
+    replay_regulator(kind, machine(params), state_of(state), (float)torque, q, (float)r[0])
+enum { OF_PARAMS, CONTINUOUS, OF_STEPS, ALONG };
+#define regulator() REGULATOR(OF_PARAMS)
+#define lqr() REGULATOR(CONTINUOUS)
+#define dlqr() REGULATOR(OF_STEPS)
+#define tvlqr() REGULATOR(ALONG)
+static void replay_regulator(int kind, acrobot_params_t params, acrobot_state_t target,
+                             float torque, const double *q, float r)
+{
+    acrobot_weights_t weights;
+    acrobot_linear_model_t continuous;
+    acrobot_step_model_t models[3];
+    acrobot_lqr_t found;
+    acrobot_state_t gains[3];
+    float cost_to_go[4][4];
+    to_floats(weights.q, q, 16);
+    to_floats(cost_to_go, q, 16);
+    weights.r = r;
+    ACCEPTED(acrobot_linearize(&params, &target, torque, &continuous, NULL));
+    for (int i = 0; i < 3; i++) {
+        ACCEPTED(acrobot_linearize_step(&params, &target, torque, &models[i], NULL));
+    }
+    switch (kind) {
+    case OF_PARAMS:
+        ACCEPTED(acrobot_regulator(&params, &target, torque, &weights, &found, NULL));
+        break;
+    case CONTINUOUS: ACCEPTED(acrobot_lqr(&continuous, &weights, &found, NULL)); break;
+    case OF_STEPS: ACCEPTED(acrobot_dlqr(&models[0], &weights, &found, NULL)); break;
+    default:
+        ACCEPTED(acrobot_tvlqr(models, &weights, &cost_to_go, gains, 3, NULL));
+        COMPARE(gains);
+        COMPARE(cost_to_go);
+        return;
+    }
+    COMPARE(found);
+}
+
+static void compare_knots(const acrobot_knot_t *knots, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        COMPARE(knots[i].state);
+        COMPARE(knots[i].torque);
+        COMPARE(knots[i].gain);
+    }
+}
+
+#define plan() \
+    CHECK(steps == KNOTS); \
+    replay_plan(machine(params), (float)limit, (float)elbow, (uint32_t)tries, (uint64_t)seed[0], \
+                state_of(start), (uint32_t)iterations, (size_t)length)
+static void replay_plan(acrobot_params_t params, float limit, float elbow, uint32_t tries,
+                        uint64_t seed, acrobot_state_t start, uint32_t iterations, size_t count)
+{
+    static const acrobot_state_t HANGING = {0, 0, 0, 0}, UPRIGHT = {3.1415927f, 0, 0, 0};
+    static acrobot_knot_t knots[KNOTS], better[KNOTS];
+    acrobot_problem_t problem;
+    acrobot_planner_t planner;
+    acrobot_feedback_t after;
+    float cost, torque;
+    size_t found;
+    ACCEPTED(acrobot_problem_init(&problem, &params, limit, elbow, NULL));
+    ACCEPTED(acrobot_planner_init(&planner, &problem, NULL));
+    ACCEPTED(acrobot_planner_plan(&planner, &HANGING, tries, seed, knots, KNOTS, &found, NULL));
+    CHECK(found == count);
+    compare_knots(knots, count);
+    ACCEPTED(acrobot_planner_improve(&planner, &start, iterations, knots, better, count, &cost,
+                                     NULL));
+    COMPARE(cost);
+    compare_knots(better, count);
+    ACCEPTED(acrobot_planner_feedback(&planner, &after));
+    for (size_t i = 0; i < 3; i++) {
+        static const size_t STEPS[] = {0, 2, KNOTS};
+        const acrobot_state_t *state = i == 0 ? &start : &UPRIGHT;
+        ACCEPTED(acrobot_plan_torque(better, count, &after, STEPS[i], state, &torque, NULL));
+        COMPARE(torque);
+    }
+}
+
+#define swing_up() \
+    const acrobot_params_t machine_ = machine(params); \
+    acrobot_swing_up_t holder; \
+    float torque; \
+    ACCEPTED(acrobot_swing_up_init(&holder, &machine_, (float)limit, NULL)); \
+    for (size_t i = 0; i < COUNT(states); i += 4) { \
+        const acrobot_state_t state = state_of(states + i); \
+        ACCEPTED(acrobot_swing_up_torque(&holder, &state, &torque, NULL)); \
+        COMPARE(torque); \
+    }
+
+#define estimate() \
+    const acrobot_params_t machine_ = machine(params); \
+    const acrobot_noise_t noise = {(float)angle_std, (float)torque_std}; \
+    const acrobot_parameter_std_t std = { \
+        0, (float)mass2_std, 0, 0, 0, 0, 0, 0, (float)coulomb2_std, 0}; \
+    acrobot_parameter_estimator_t filter; \
+    acrobot_state_t state; \
+    acrobot_params_t estimated; \
+    ACCEPTED(acrobot_parameter_estimator_init(&filter, &machine_, &std, &noise, NULL)); \
+    for (size_t i = 0; i < COUNT(torques); i++) { \
+        ACCEPTED(acrobot_parameter_estimator_correct(&filter, (float)angles[2 * i], \
+                                                     (float)angles[2 * i + 1], NULL)); \
+        ACCEPTED(acrobot_parameter_estimator_predict(&filter, (float)torques[i], NULL)); \
+    } \
+    ACCEPTED(acrobot_parameter_estimator_state(&filter, &state)); \
+    COMPARE(state); \
+    ACCEPTED(acrobot_parameter_estimator_state_std(&filter, &state)); \
+    COMPARE(state); \
+    ACCEPTED(acrobot_parameter_estimator_params(&filter, &estimated)); \
+    COMPARE_PARAMS(estimated)
+
+// The parameters that Rust identifies are double.
+#define identify() \
+    static acrobot_sample_t samples[COUNT(torques)]; \
+    const acrobot_params_t given = machine(params); \
+    acrobot_params_t found; \
+    (void)values, (void)std_errors; \
+    for (size_t i = 0; i < COUNT(torques); i++) { \
+        samples[i].angles[0] = angles[2 * i]; \
+        samples[i].angles[1] = angles[2 * i + 1]; \
+        samples[i].torques[1] = torques[i]; \
+    } \
+    ACCEPTED(acrobot_identify(samples, COUNT(samples), &given, &found, NULL)); \
+    for (size_t i = 0; i < 21; i++) { \
+        float number; \
+        __builtin_memcpy(&number, (const float *)(const void *)&found + i, sizeof number); \
+        CHECK(number == (float)*expected++); \
+    }
+
+#define control() \
+    const acrobot_settings_t settings = { \
+        machine(params), (float)limit, {(int32_t)per_turn[0], (int32_t)per_turn[1]}, \
+        (uint32_t)ticks}; \
+    static acrobot_controller_t controller; \
+    static acrobot_replanner_t replanner; \
+    float torque; \
+    ACCEPTED(acrobot_controller_init(&controller, &settings, NULL)); \
+    ACCEPTED(acrobot_replanner_init(&replanner, &settings, NULL)); \
+    for (size_t i = 0; i < COUNT(counts) / 2; i++) { \
+        ACCEPTED(acrobot_controller_tick(&controller, (int32_t)counts[2 * i], \
+                                         (int32_t)counts[2 * i + 1], &torque, NULL)); \
+        COMPARE(torque); \
+        if (i % (size_t)every == 0) { \
+            ACCEPTED(acrobot_replanner_exchange(&replanner, &controller)); \
+            ACCEPTED(acrobot_replanner_work(&replanner)); \
+        } \
+    }
+
+int main(void)
+{
+#include "results.h"
+    return report("results");
+}
