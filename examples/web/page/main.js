@@ -25,7 +25,7 @@ function start() {
   const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
   /** The acrobot to compare with. */
   const rival = new Game(42n, { ...DEFAULTS });
-  /** The module of the planner and of pulls, once one is needed, and the planner of each game. */
+  /** The module of the planner and of pulls, once it has been loaded, and each game's planner. */
   let control = null;
   const planners = new Map();
   let learnt = learner;
@@ -56,17 +56,6 @@ function start() {
 
   // ---- the episode
 
-  /** Loads the module. Until then nothing is planned or pulled. */
-  const load = async () => {
-    try {
-      control ??= await import("./planner.js");
-      for (const each of [game, rival]) {
-        if (!planners.has(each)) planners.set(each, new control.PlannerPolicy());
-      }
-    } catch (error) {
-      pause(`The planner could not be loaded: ${error.message}.`);
-    }
-  };
   const level = (policy, game) => {
     const decided = {
       keys: () => FULL * (Number(held.right) - Number(held.left)),
@@ -84,7 +73,8 @@ function start() {
   const push = () => {
     if (grip === null || control === null) return null;
     const { state, params } = game.acrobot;
-    const units = control.pull(grip.point, target(), state, params).map((x) => Math.round(UNITS * x) || 0);
+    const change = control.pull(grip.point, target(), state, params);
+    const units = change.map((x) => Math.round(UNITS * x) || 0);
     return units.some((unit) => unit !== 0) ? units : null;
   };
 
@@ -196,7 +186,6 @@ function start() {
     before = takesOver ? game.steps : 0;
     $("policy").value = policy;
     if (policy === "planner") {
-      load();
       game.release();
       nextAt = Infinity;
     } else if (policy === "link") begin(recorded.seed, recorded.params);
@@ -226,6 +215,7 @@ function start() {
     charts.forEach((show) => show(game));
     const verdict = ({ steps, end }) =>
       ({ goal: `Goal! ${steps} steps`, limit: "Out of time" })[end];
+    const rivalVerdict = verdict(rival) ?? String(rival.steps);
     const texts = {
       "step": String(game.steps),
       "return": game.free ? `${upright.toFixed(1)} s` : minus(String(game.return)),
@@ -234,7 +224,7 @@ function start() {
       "pause": playing ? "Pause" : "Play",
       "verdict": verdict(game) ?? "",
       "rival-label": `Grey: ${$("rival").selectedOptions[0].textContent}`,
-      "rival-steps": isUpright(rival.acrobot.state) ? "upright" : verdict(rival) ?? `${rival.steps}`,
+      "rival-steps": isUpright(rival.acrobot.state) ? "upright" : rivalVerdict,
     };
     for (const [id, text] of Object.entries(texts)) write(id, text);
     $("rival-score").hidden = $("rival").value === "";
@@ -296,7 +286,6 @@ function start() {
     hold,
     grip(pulled) {
       grip = pulled;
-      if (grip !== null) load();
       // A replay has its own pushes.
       if (grip !== null && $("policy").value === "link") choose("keys");
     },
@@ -318,7 +307,6 @@ function start() {
     if (!["keys", "link"].includes(option.value)) $("rival").append(option.cloneNode(true));
   }
   $("rival").onchange = ({ target: { value } }) => {
-    if (value === "planner") load();
     begin(game.seed);
     const name = $("rival").selectedOptions[0].textContent;
     if (value !== "") say(`${name} plays behind it, from the same seed, with the same pulls.`);
@@ -417,6 +405,13 @@ function start() {
   if (!playing) say(`Press Play to watch Bang-bang. ${takeOver}`);
   open(hash);
   requestAnimationFrame(frame);
+
+  // The page begins without it, because it is large.
+  import("./planner.js").then((module) => {
+    control = module;
+    for (const each of [game, rival]) planners.set(each, new control.PlannerPolicy());
+    $("balance").disabled = false;
+  }, ({ message }) => say(`The planner could not be loaded: ${message}.`));
 }
 
 try {

@@ -1,6 +1,7 @@
-// The policy "Planner". A worker plans while the acrobot goes on, so a plan begins in a state that
-// is predicted. All steps to come are predicted in a model: the picture shows where the tip will
-// be, and a state that differs shows that somebody has pushed or that a parameter has changed.
+// The policy "Planner", and pulls: what needs the package's module for control. A worker plans
+// while the acrobot goes on, so a plan begins in a state that is predicted. All steps to come are
+// predicted in a model: the picture shows where the tip will be, and a state that differs shows
+// that somebody has pushed or that a parameter has changed.
 
 import { Estimator, deviationFrom, planTorque } from "./acrobot-rs/control.js";
 import { energyLaw } from "./acrobot-rs/policies.js";
