@@ -132,6 +132,8 @@ fill(f"{ABI}task.rs", "// derive.py writes the tasks.", lines, "// The end of th
 # C's header.
 cbindgen = subprocess.run(["cbindgen", "--quiet"], cwd=ROOT / ABI / "..", stdout=-1, check=True)
 header = cbindgen.stdout.decode()
+for line in re.findall(r"^\w.{98,}\);$", header, re.MULTILINE):
+    header = header.replace(line, "\n".join(wrapped(re.sub("(?<!,) ", "\xa0", line), "", "    ")))
 write("bindings/c/include/acrobot.h", header)
 
 # The layout of C's structs in wasm32, and assertions for the compiler that it is this.
@@ -148,11 +150,13 @@ for body, name in re.findall(r"typedef struct {(.*?)\n} (\w+);", header, re.DOTA
 files = [(path.stem, path.read_text()) for path in sorted((ROOT / ABI).glob("*.rs"))]
 homes = [home for home, text in files if any(f"struct {name} {{" in text for name in structs)]
 lines = ["//! The layout that derive.py computes for JavaScript.", "", "use core::mem::offset_of;"]
-lines += ["", *(f"use crate::{home}::*;" for home in homes), "", "const _: () = {"]
+lines += ["", *(f"use crate::{home}::*;" for home in homes)]
+lines += ["", "/// The offset of the last field, which those before it decide, and the size."]
+lines += ["const fn has<T>(last: usize, expected: usize, size: usize) {"]
+lines += ["    assert!(last == expected && size_of::<T>() == size);", "}", "", "const _: () = {"]
 for name, fields in structs.items():
-    lines += [f"    assert!(size_of::<{name}>() == {sizes[name][0]});"]
-    for field, (start, _) in fields.items():
-        lines += [f"    assert!(offset_of!({name}, {field}) == {start});"]
+    last, (start, _) = [*fields.items()][-1]
+    lines += [f"    has::<{name}>(offset_of!({name}, {last}), {start}, {sizes[name][0]});"]
 write(f"{ABI}layout.rs", "\n".join([*lines, "};", ""]))
 
 

@@ -7,7 +7,7 @@ use core::{ptr, slice};
 use acrobot::Fast;
 use acrobot::arithmetic::Damped;
 use acrobot::batch::StepBuffers;
-use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams};
+use acrobot::batch::{Autoreset, Batch, BatchMemory, Block, Input, LaneParams, OwnParams};
 use acrobot::numpy::Pcg64;
 use acrobot::task::AnyTask;
 
@@ -228,7 +228,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
     results: *const acrobot_batch_results_t,
     count: usize,
 ) -> acrobot_status_t {
-    step(batch, Inputs::Actions(actions), results, count)
+    step(batch, actions, results, count)
 }
 
 /// As acrobot_batch_step, with any finite torques, N m.
@@ -239,7 +239,7 @@ pub unsafe extern "C" fn acrobot_batch_step_torque(
     results: *const acrobot_batch_results_t,
     count: usize,
 ) -> acrobot_status_t {
-    step(batch, Inputs::Torques(torques), results, count)
+    step(batch, torques, results, count)
 }
 
 /// An array that the caller may omit: null and without elements then.
@@ -250,14 +250,9 @@ fn optional<T>(start: *mut T, count: usize) -> Result<*mut [T], Rejected> {
     array(start, count)
 }
 
-enum Inputs {
-    Actions(*const u8),
-    Torques(*const f32),
-}
-
-unsafe fn step(
+unsafe fn step<I: Input<f32>>(
     batch: *mut acrobot_batch_t,
-    inputs: Inputs,
+    inputs: *const I,
     results: *const acrobot_batch_results_t,
     count: usize,
 ) -> acrobot_status_t {
@@ -265,10 +260,7 @@ unsafe fn step(
         let placed = counted(batch, count)?;
         let pointers = Span::new(results, 1);
         let results = read(results)?;
-        let inputs_span = match inputs {
-            Inputs::Actions(actions) => Span::of(array(actions.cast_mut(), count)?),
-            Inputs::Torques(torques) => Span::of(array(torques.cast_mut(), count)?),
-        };
+        let inputs = array(inputs.cast_mut(), count)?;
         let rewards = array(results.rewards, count)?;
         let terminated = array(results.terminated, count)?;
         let truncated = array(results.truncated, count)?;
@@ -277,7 +269,7 @@ unsafe fn step(
         check_apart(&[
             memory_of(batch, &placed.batch),
             pointers,
-            inputs_span,
+            Span::of(inputs),
             Span::of(rewards),
             Span::of(terminated),
             Span::of(truncated),
@@ -290,14 +282,7 @@ unsafe fn step(
         let mut buffers = StepBuffers::new(&mut *rewards, &mut *terminated, &mut *truncated);
         buffers.observations = observations.as_mut();
         buffers.final_observations = finals.as_mut();
-        match inputs {
-            Inputs::Actions(actions) => {
-                placed.batch.step_into(slice::from_raw_parts(actions, count), buffers)?;
-            }
-            Inputs::Torques(torques) => {
-                placed.batch.step_into(slice::from_raw_parts(torques, count), buffers)?;
-            }
-        }
+        placed.batch.step_into(&*inputs, buffers)?;
         Ok(())
     })
 }

@@ -89,40 +89,9 @@ impl Holder for acrobot_parameter_estimator_t {
     const TAG: u32 = u32::from_le_bytes(*b"pest");
 }
 
-type Filter<const K: usize> = KalmanFilter<Damped<Fast>, K>;
-
-unsafe fn correct<H: Holder<Value = Filter<K>>, const K: usize>(
-    filter: *mut H,
-    angles: [f32; 2],
-    error: *mut acrobot_error_t,
-) -> acrobot_status_t {
-    change(filter, ptr::null_mut(), error, |value| Ok(value.correct(angles)?))
-}
-
-unsafe fn predict<H: Holder<Value = Filter<K>>, const K: usize>(
-    filter: *mut H,
-    torque: f32,
-    error: *mut acrobot_error_t,
-) -> acrobot_status_t {
-    change(filter, ptr::null_mut(), error, |value| Ok(value.predict(torque)?))
-}
-
-unsafe fn state<H: Holder<Value = Filter<K>>, const K: usize>(
-    filter: *const H,
-    state: *mut acrobot_state_t,
-) -> acrobot_status_t {
-    get(filter, state, |value| Ok(value.state().into()))
-}
-
-unsafe fn state_std<H: Holder<Value = Filter<K>>, const K: usize>(
-    filter: *const H,
-    std: *mut acrobot_state_t,
-) -> acrobot_status_t {
-    get(
-        filter,
-        std,
-        |value| Ok(State::from(value.state_std().unwrap_or([f32::INFINITY; 4])).into()),
-    )
+/// Of a filter that has no measurement yet, they are infinite.
+fn std_of<const K: usize>(filter: &KalmanFilter<Damped<Fast>, K>) -> acrobot_state_t {
+    State::from(filter.state_std().unwrap_or([f32::INFINITY; 4])).into()
 }
 
 /// Estimates the state of a machine with these parameters. The first measurement sets it.
@@ -145,7 +114,7 @@ pub unsafe extern "C" fn acrobot_estimator_correct(
     theta2: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    correct(filter, [theta1, theta2], error)
+    change(filter, ptr::null_mut(), error, |value| Ok(value.correct([theta1, theta2])?))
 }
 
 /// Takes a step of `dt` with a torque, N m. Before a measurement it does nothing. If a joint turns
@@ -157,7 +126,7 @@ pub unsafe extern "C" fn acrobot_estimator_predict(
     torque: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    predict(filter, torque, error)
+    change(filter, ptr::null_mut(), error, |value| Ok(value.predict(torque)?))
 }
 
 #[unsafe(no_mangle)]
@@ -165,7 +134,7 @@ pub unsafe extern "C" fn acrobot_estimator_state(
     filter: *const acrobot_estimator_t,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    self::state(filter, state)
+    get(filter, state, |value| Ok(value.state().into()))
 }
 
 /// The standard deviations of the state; INFINITY before a measurement.
@@ -174,7 +143,7 @@ pub unsafe extern "C" fn acrobot_estimator_state_std(
     filter: *const acrobot_estimator_t,
     std: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    state_std(filter, std)
+    get(filter, std, |value| Ok(std_of(value)))
 }
 
 /// Estimates the state, and the parameters whose standard deviation is not 0.
@@ -201,7 +170,7 @@ pub unsafe extern "C" fn acrobot_parameter_estimator_correct(
     theta2: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    correct(filter, [theta1, theta2], error)
+    change(filter, ptr::null_mut(), error, |value| Ok(value.correct([theta1, theta2])?))
 }
 
 /// As acrobot_estimator_predict.
@@ -211,7 +180,7 @@ pub unsafe extern "C" fn acrobot_parameter_estimator_predict(
     torque: f32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    predict(filter, torque, error)
+    change(filter, ptr::null_mut(), error, |value| Ok(value.predict(torque)?))
 }
 
 #[unsafe(no_mangle)]
@@ -219,7 +188,7 @@ pub unsafe extern "C" fn acrobot_parameter_estimator_state(
     filter: *const acrobot_parameter_estimator_t,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    self::state(filter, state)
+    get(filter, state, |value| Ok(value.state().into()))
 }
 
 /// As acrobot_estimator_state_std.
@@ -228,7 +197,7 @@ pub unsafe extern "C" fn acrobot_parameter_estimator_state_std(
     filter: *const acrobot_parameter_estimator_t,
     std: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    state_std(filter, std)
+    get(filter, std, |value| Ok(std_of(value)))
 }
 
 /// The estimated parameters, and those that are known.

@@ -621,34 +621,27 @@ const char *acrobot_error_text(int kind);
 acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
 
 // As acrobot_init, for an ACROBOT_TASK with its parameters and its limit of steps.
-acrobot_status_t acrobot_init_task(acrobot_t *acrobot,
-                                   int task,
-                                   uint64_t seed,
-                                   acrobot_error_t *error);
+acrobot_status_t acrobot_init_task(acrobot_t *acrobot, int task, uint64_t seed,
+    acrobot_error_t *error);
 
 // Begins an episode in a drawn initial state.
 acrobot_status_t acrobot_reset(acrobot_t *acrobot, acrobot_observation_t *observation);
 
 // As acrobot_reset after seeding: Gymnasium's `reset(seed=seed)`.
-acrobot_status_t acrobot_reset_with_seed(acrobot_t *acrobot,
-                                         uint64_t seed,
-                                         acrobot_observation_t *observation);
+acrobot_status_t acrobot_reset_with_seed(acrobot_t *acrobot, uint64_t seed,
+    acrobot_observation_t *observation);
 
 // As acrobot_reset, with a seed of any size, or bounds of the initial state.
-acrobot_status_t acrobot_reset_with(acrobot_t *acrobot,
-                                    const acrobot_reset_options_t *options,
-                                    acrobot_observation_t *observation,
-                                    acrobot_error_t *error);
+acrobot_status_t acrobot_reset_with(acrobot_t *acrobot, const acrobot_reset_options_t *options,
+    acrobot_observation_t *observation, acrobot_error_t *error);
 
 // Applies the torque of an ACROBOT_ACTION for one dt. After the end of an episode call
 // acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 acrobot_status_t acrobot_step(acrobot_t *acrobot, int action, acrobot_step_t *step);
 
 // Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it.
-acrobot_status_t acrobot_step_torque(acrobot_t *acrobot,
-                                     float torque,
-                                     acrobot_step_t *step,
-                                     acrobot_error_t *error);
+acrobot_status_t acrobot_step_torque(acrobot_t *acrobot, float torque, acrobot_step_t *step,
+    acrobot_error_t *error);
 
 acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t *observation);
 
@@ -662,28 +655,24 @@ acrobot_status_t acrobot_task(const acrobot_t *acrobot, int *task);
 acrobot_status_t acrobot_max_steps(const acrobot_t *acrobot, uint32_t *max_steps);
 
 // Sets the limit of steps, above 0.
-acrobot_status_t acrobot_set_max_steps(acrobot_t *acrobot,
-                                       uint32_t max_steps,
-                                       acrobot_error_t *error);
+acrobot_status_t acrobot_set_max_steps(acrobot_t *acrobot, uint32_t max_steps,
+    acrobot_error_t *error);
 
 acrobot_status_t acrobot_state(const acrobot_t *acrobot, acrobot_state_t *state);
 
 // The number of steps stays.
-acrobot_status_t acrobot_set_state(acrobot_t *acrobot,
-                                   const acrobot_state_t *state,
-                                   acrobot_error_t *error);
+acrobot_status_t acrobot_set_state(acrobot_t *acrobot, const acrobot_state_t *state,
+    acrobot_error_t *error);
 
 acrobot_status_t acrobot_params(const acrobot_t *acrobot, acrobot_params_t *params);
 
 // Sets the parameters of the next steps. The state stays.
-acrobot_status_t acrobot_set_params(acrobot_t *acrobot,
-                                    const acrobot_params_t *params,
-                                    acrobot_error_t *error);
+acrobot_status_t acrobot_set_params(acrobot_t *acrobot, const acrobot_params_t *params,
+    acrobot_error_t *error);
 
 // Draws parameters from the acrobot's generator: call it after a reset.
-acrobot_status_t acrobot_draw_params(acrobot_t *acrobot,
-                                     const acrobot_draws_t *draws,
-                                     acrobot_error_t *error);
+acrobot_status_t acrobot_draw_params(acrobot_t *acrobot, const acrobot_draws_t *draws,
+    acrobot_error_t *error);
 
 // The total energy of the state, J.
 acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
@@ -695,92 +684,61 @@ acrobot_status_t acrobot_tip_height(const acrobot_t *acrobot, float *height);
 acrobot_status_t acrobot_task_params(int task, acrobot_params_t *params, acrobot_error_t *error);
 
 // The deviation of a state from a `target`, with angles wrapped to ±π.
-acrobot_status_t acrobot_deviation_from(const acrobot_state_t *state,
-                                        const acrobot_state_t *target,
-                                        acrobot_state_t *deviation,
-                                        acrobot_error_t *error);
+acrobot_status_t acrobot_deviation_from(const acrobot_state_t *state, const acrobot_state_t *target,
+    acrobot_state_t *deviation, acrobot_error_t *error);
 
 // The rates of a state under a torque, N m, by the equations of motion.
-acrobot_status_t acrobot_derivative(const acrobot_params_t *params,
-                                    const acrobot_state_t *state,
-                                    float torque,
-                                    acrobot_rates_t *rates,
-                                    acrobot_error_t *error);
+acrobot_status_t acrobot_derivative(const acrobot_params_t *params, const acrobot_state_t *state,
+    float torque, acrobot_rates_t *rates, acrobot_error_t *error);
 
 // The mass matrix M by rows, kg m²: the kinetic energy is half of vᵀ M v for the velocities v.
-acrobot_status_t acrobot_mass_matrix(const acrobot_params_t *params,
-                                     const acrobot_state_t *state,
-                                     float (*mass_matrix)[2][2],
-                                     acrobot_error_t *error);
+acrobot_status_t acrobot_mass_matrix(const acrobot_params_t *params, const acrobot_state_t *state,
+    float (*mass_matrix)[2][2], acrobot_error_t *error);
 
 // What accelerations, rad/s², need in a state: the inverse of acrobot_derivative.
 acrobot_status_t acrobot_inverse_dynamics(const acrobot_params_t *params,
-                                          const acrobot_state_t *state,
-                                          float ddtheta1,
-                                          float ddtheta2,
-                                          acrobot_forces_t *forces,
-                                          acrobot_error_t *error);
+    const acrobot_state_t *state, float ddtheta1, float ddtheta2, acrobot_forces_t *forces,
+    acrobot_error_t *error);
 
 // Linearizes the equations of motion about any state and torque, N m.
-acrobot_status_t acrobot_linearize(const acrobot_params_t *params,
-                                   const acrobot_state_t *state,
-                                   float torque,
-                                   acrobot_linear_model_t *model,
-                                   acrobot_error_t *error);
+acrobot_status_t acrobot_linearize(const acrobot_params_t *params, const acrobot_state_t *state,
+    float torque, acrobot_linear_model_t *model, acrobot_error_t *error);
 
 // Linearizes one step about any state and torque, N m.
 acrobot_status_t acrobot_linearize_step(const acrobot_params_t *params,
-                                        const acrobot_state_t *state,
-                                        float torque,
-                                        acrobot_step_model_t *model,
-                                        acrobot_error_t *error);
+    const acrobot_state_t *state, float torque, acrobot_step_model_t *model,
+    acrobot_error_t *error);
 
 // The regulator that holds a machine at `target`, which must be in equilibrium under `torque`,
 // N m, such as upright and 0: velocities of 0, and accelerations of at most 0.25 % of that with
 // which the straight machine, when it is horizontal, falls and is turned by the torque. Decisions
 // are `dt` apart. The torque is then `torque` − K x, a sum of four products; clamp it to that of
 // your motor.
-acrobot_status_t acrobot_regulator(const acrobot_params_t *params,
-                                   const acrobot_state_t *target,
-                                   float torque,
-                                   const acrobot_weights_t *weights,
-                                   acrobot_lqr_t *lqr,
-                                   acrobot_error_t *error);
+acrobot_status_t acrobot_regulator(const acrobot_params_t *params, const acrobot_state_t *target,
+    float torque, const acrobot_weights_t *weights, acrobot_lqr_t *lqr, acrobot_error_t *error);
 
 // The regulator of a model in continuous time: the least integral of the weights.
-acrobot_status_t acrobot_lqr(const acrobot_linear_model_t *model,
-                             const acrobot_weights_t *weights,
-                             acrobot_lqr_t *lqr,
-                             acrobot_error_t *error);
+acrobot_status_t acrobot_lqr(const acrobot_linear_model_t *model, const acrobot_weights_t *weights,
+    acrobot_lqr_t *lqr, acrobot_error_t *error);
 
 // The regulator of a model of steps: the least sum of the weights.
-acrobot_status_t acrobot_dlqr(const acrobot_step_model_t *model,
-                              const acrobot_weights_t *weights,
-                              acrobot_lqr_t *lqr,
-                              acrobot_error_t *error);
+acrobot_status_t acrobot_dlqr(const acrobot_step_model_t *model, const acrobot_weights_t *weights,
+    acrobot_lqr_t *lqr, acrobot_error_t *error);
 
 // The regulator along a trajectory: `models` and `gains` have an element for each step. P of
 // xᵀ P x, the cost after the last step, becomes that before the first. Rejected calls may change
 // gains.
-acrobot_status_t acrobot_tvlqr(const acrobot_step_model_t *models,
-                               const acrobot_weights_t *weights,
-                               float (*cost_to_go)[4][4],
-                               acrobot_state_t *gains,
-                               size_t count,
-                               acrobot_error_t *error);
+acrobot_status_t acrobot_tvlqr(const acrobot_step_model_t *models, const acrobot_weights_t *weights,
+    float (*cost_to_go)[4][4], acrobot_state_t *gains, size_t count, acrobot_error_t *error);
 
 // The problem to stand with an `elbow` angle, rad, for a largest torque, N m: 0 is a swing-up. It
 // has the default weights, which follow from the size of the machine. Then you may change them.
-acrobot_status_t acrobot_problem_init(acrobot_problem_t *problem,
-                                      const acrobot_params_t *params,
-                                      float limit,
-                                      float elbow,
-                                      acrobot_error_t *error);
+acrobot_status_t acrobot_problem_init(acrobot_problem_t *problem, const acrobot_params_t *params,
+    float limit, float elbow, acrobot_error_t *error);
 
 // No velocity of a plan reaches its bound.
-acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner,
-                                      const acrobot_problem_t *problem,
-                                      acrobot_error_t *error);
+acrobot_status_t acrobot_planner_init(acrobot_planner_t *planner, const acrobot_problem_t *problem,
+    acrobot_error_t *error);
 
 // Changes a planner to plan for a simulation that clamps velocities at the bounds of its
 // parameters, as Gymnasium's does. Plans may use that as a brake.
@@ -789,114 +747,84 @@ acrobot_status_t acrobot_planner_with_velocity_clamp(acrobot_planner_t *planner)
 // Plans until a plan ends where the regulator holds the target. `length` receives its number of
 // knots, which are the first. `error` names the `tries` if so many find no plan. Rejected calls
 // may change knots.
-acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner,
-                                      const acrobot_state_t *start,
-                                      uint32_t tries,
-                                      uint64_t seed,
-                                      acrobot_knot_t *knots,
-                                      size_t count,
-                                      size_t *length,
-                                      acrobot_error_t *error);
+acrobot_status_t acrobot_planner_plan(acrobot_planner_t *planner, const acrobot_state_t *start,
+    uint32_t tries, uint64_t seed, acrobot_knot_t *knots, size_t count, size_t *length,
+    acrobot_error_t *error);
 
 // Improves a plan, or the rest of one, by at most so many iterations: from the state `start` on.
 // `plan` stays as it is, so the machine may follow it meanwhile. `improved` receives the new plan,
 // and `cost` what it costs. Rejected calls may change `improved`.
-acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner,
-                                         const acrobot_state_t *start,
-                                         uint32_t iterations,
-                                         const acrobot_knot_t *plan,
-                                         acrobot_knot_t *improved,
-                                         size_t length,
-                                         float *cost,
-                                         acrobot_error_t *error);
+acrobot_status_t acrobot_planner_improve(acrobot_planner_t *planner, const acrobot_state_t *start,
+    uint32_t iterations, const acrobot_knot_t *plan, acrobot_knot_t *improved, size_t length,
+    float *cost, acrobot_error_t *error);
 
 // What holds the target after each plan.
 acrobot_status_t acrobot_planner_feedback(const acrobot_planner_t *planner,
-                                          acrobot_feedback_t *feedback);
+    acrobot_feedback_t *feedback);
 
 // Whether this feedback, with the largest torque, takes the machine from a state to the target.
 acrobot_status_t acrobot_planner_holds_from(const acrobot_planner_t *planner,
-                                            const acrobot_state_t *state,
-                                            bool *holds,
-                                            acrobot_error_t *error);
+    const acrobot_state_t *state, bool *holds, acrobot_error_t *error);
 
 // The torque at a step of a plan, N m, and after it that of the feedback. Clamp it to that of your
 // motor. It needs no planner, so knots and feedback may be constants.
-acrobot_status_t acrobot_plan_torque(const acrobot_knot_t *knots,
-                                     size_t length,
-                                     const acrobot_feedback_t *after,
-                                     size_t step,
-                                     const acrobot_state_t *state,
-                                     float *torque,
-                                     acrobot_error_t *error);
+acrobot_status_t acrobot_plan_torque(const acrobot_knot_t *knots, size_t length,
+    const acrobot_feedback_t *after, size_t step, const acrobot_state_t *state, float *torque,
+    acrobot_error_t *error);
 
 // For a machine with these parameters, whose `dt` is the time between two decisions, and a largest
 // torque, N m.
-acrobot_status_t acrobot_swing_up_init(acrobot_swing_up_t *swing_up,
-                                       const acrobot_params_t *params,
-                                       float limit,
-                                       acrobot_error_t *error);
+acrobot_status_t acrobot_swing_up_init(acrobot_swing_up_t *swing_up, const acrobot_params_t *params,
+    float limit, acrobot_error_t *error);
 
 // The torque without a plan, N m, at most the largest. It pumps energy until the regulator holds.
-acrobot_status_t acrobot_swing_up_torque(acrobot_swing_up_t *swing_up,
-                                         const acrobot_state_t *state,
-                                         float *torque,
-                                         acrobot_error_t *error);
+acrobot_status_t acrobot_swing_up_torque(acrobot_swing_up_t *swing_up, const acrobot_state_t *state,
+    float *torque, acrobot_error_t *error);
 
 // Estimates the state of a machine with these parameters. The first measurement sets it.
-acrobot_status_t acrobot_estimator_init(acrobot_estimator_t *filter,
-                                        const acrobot_params_t *params,
-                                        const acrobot_noise_t *noise,
-                                        acrobot_error_t *error);
+acrobot_status_t acrobot_estimator_init(acrobot_estimator_t *filter, const acrobot_params_t *params,
+    const acrobot_noise_t *noise, acrobot_error_t *error);
 
 // Corrects the estimate by measured angles, rad. The first ones are taken as they are, with
 // velocities of 0.
-acrobot_status_t acrobot_estimator_correct(acrobot_estimator_t *filter,
-                                           float theta1,
-                                           float theta2,
-                                           acrobot_error_t *error);
+acrobot_status_t acrobot_estimator_correct(acrobot_estimator_t *filter, float theta1, float theta2,
+    acrobot_error_t *error);
 
 // Takes a step of `dt` with a torque, N m. Before a measurement it does nothing. If a joint turns
 // by more than half a turn in the step, or a number overflows, it is rejected, and the next
 // measurement begins again.
-acrobot_status_t acrobot_estimator_predict(acrobot_estimator_t *filter,
-                                           float torque,
-                                           acrobot_error_t *error);
+acrobot_status_t acrobot_estimator_predict(acrobot_estimator_t *filter, float torque,
+    acrobot_error_t *error);
 
 acrobot_status_t acrobot_estimator_state(const acrobot_estimator_t *filter, acrobot_state_t *state);
 
 // The standard deviations of the state; INFINITY before a measurement.
 acrobot_status_t acrobot_estimator_state_std(const acrobot_estimator_t *filter,
-                                             acrobot_state_t *std);
+    acrobot_state_t *std);
 
 // Estimates the state, and the parameters whose standard deviation is not 0.
 acrobot_status_t acrobot_parameter_estimator_init(acrobot_parameter_estimator_t *filter,
-                                                  const acrobot_params_t *params,
-                                                  const acrobot_parameter_std_t *std,
-                                                  const acrobot_noise_t *noise,
-                                                  acrobot_error_t *error);
+    const acrobot_params_t *params, const acrobot_parameter_std_t *std,
+    const acrobot_noise_t *noise, acrobot_error_t *error);
 
 // As acrobot_estimator_correct.
 acrobot_status_t acrobot_parameter_estimator_correct(acrobot_parameter_estimator_t *filter,
-                                                     float theta1,
-                                                     float theta2,
-                                                     acrobot_error_t *error);
+    float theta1, float theta2, acrobot_error_t *error);
 
 // As acrobot_estimator_predict.
 acrobot_status_t acrobot_parameter_estimator_predict(acrobot_parameter_estimator_t *filter,
-                                                     float torque,
-                                                     acrobot_error_t *error);
+    float torque, acrobot_error_t *error);
 
 acrobot_status_t acrobot_parameter_estimator_state(const acrobot_parameter_estimator_t *filter,
-                                                   acrobot_state_t *state);
+    acrobot_state_t *state);
 
 // As acrobot_estimator_state_std.
 acrobot_status_t acrobot_parameter_estimator_state_std(const acrobot_parameter_estimator_t *filter,
-                                                       acrobot_state_t *std);
+    acrobot_state_t *std);
 
 // The estimated parameters, and those that are known.
 acrobot_status_t acrobot_parameter_estimator_params(const acrobot_parameter_estimator_t *filter,
-                                                    acrobot_params_t *params);
+    acrobot_params_t *params);
 
 // No recording.
 acrobot_status_t acrobot_regression_init(acrobot_regression_t *regression);
@@ -905,13 +833,8 @@ acrobot_status_t acrobot_regression_init(acrobot_regression_t *regression);
 // is that of a parabola through 2 `half` + 1 angles, and a window has so many samples; the next
 // one begins in its middle. Both are above 0. A recording that is too short adds nothing.
 acrobot_status_t acrobot_regression_add(acrobot_regression_t *regression,
-                                        const acrobot_sample_t *samples,
-                                        size_t count,
-                                        double dt,
-                                        double gravity,
-                                        size_t half,
-                                        size_t window,
-                                        acrobot_error_t *error);
+    const acrobot_sample_t *samples, size_t count, double dt, double gravity, size_t half,
+    size_t window, acrobot_error_t *error);
 
 // The numbers that fit the recordings best.
 acrobot_status_t acrobot_regression_fit(const acrobot_regression_t *regression, acrobot_fit_t *fit);
@@ -919,58 +842,45 @@ acrobot_status_t acrobot_regression_fit(const acrobot_regression_t *regression, 
 // The parameters of a fit: those of `given` with the length of link 1, masses, inertias, rotor and
 // friction that move as the machine does. Rejected if no machine has these numbers, or the
 // recordings do not determine one that is not a friction.
-acrobot_status_t acrobot_fit_params(const acrobot_fit_t *fit,
-                                    const acrobot_params_t *given,
-                                    acrobot_params_t *params,
-                                    acrobot_error_t *error);
+acrobot_status_t acrobot_fit_params(const acrobot_fit_t *fit, const acrobot_params_t *given,
+    acrobot_params_t *params, acrobot_error_t *error);
 
 // The parameters of a recording with a sample in each `dt` of `given`, whose lengths should be
 // about right, too. Tries many windows, and takes those that predict best.
-acrobot_status_t acrobot_identify(const acrobot_sample_t *samples,
-                                  size_t count,
-                                  const acrobot_params_t *given,
-                                  acrobot_params_t *params,
-                                  acrobot_error_t *error);
+acrobot_status_t acrobot_identify(const acrobot_sample_t *samples, size_t count,
+    const acrobot_params_t *given, acrobot_params_t *params, acrobot_error_t *error);
 
 // The root of the mean square of the errors of angles, rad, if they are predicted `horizon` steps
 // ahead; 0 for a recording that is too short.
 acrobot_status_t acrobot_prediction_error(const acrobot_params_t *params,
-                                          const acrobot_sample_t *samples,
-                                          size_t count,
-                                          size_t horizon,
-                                          double *prediction_error,
-                                          acrobot_error_t *error);
+    const acrobot_sample_t *samples, size_t count, size_t horizon, double *prediction_error,
+    acrobot_error_t *error);
 
 // A controller without a plan: its torque is 0.
 acrobot_status_t acrobot_controller_init(acrobot_controller_t *controller,
-                                         const acrobot_settings_t *settings,
-                                         acrobot_error_t *error);
+    const acrobot_settings_t *settings, acrobot_error_t *error);
 
 // The torque from now to the next tick, N m, from what both encoders count. It is short. If it is
 // rejected, switch the motor off.
-acrobot_status_t acrobot_controller_tick(acrobot_controller_t *controller,
-                                         int32_t count1,
-                                         int32_t count2,
-                                         float *torque,
-                                         acrobot_error_t *error);
+acrobot_status_t acrobot_controller_tick(acrobot_controller_t *controller, int32_t count1,
+    int32_t count2, float *torque, acrobot_error_t *error);
 
 // The estimated state.
 acrobot_status_t acrobot_controller_state(const acrobot_controller_t *controller,
-                                          acrobot_state_t *state);
+    acrobot_state_t *state);
 
 // The estimated parameters.
 acrobot_status_t acrobot_controller_params(const acrobot_controller_t *controller,
-                                           acrobot_params_t *params);
+    acrobot_params_t *params);
 
 // A replanner without a plan.
 acrobot_status_t acrobot_replanner_init(acrobot_replanner_t *replanner,
-                                        const acrobot_settings_t *settings,
-                                        acrobot_error_t *error);
+    const acrobot_settings_t *settings, acrobot_error_t *error);
 
 // Gives the controller the plan once it is due, and takes the estimates. It is short, and no tick
 // may come meanwhile: switch the interrupt off.
 acrobot_status_t acrobot_replanner_exchange(acrobot_replanner_t *replanner,
-                                            acrobot_controller_t *controller);
+    acrobot_controller_t *controller);
 
 // Plans for some milliseconds to tens of them: once after each acrobot_replanner_exchange. The
 // interrupt may stop it anywhere.
@@ -981,16 +891,14 @@ acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space,
 
 // As acrobot_action_space_init, with a seed of any size: its words of 32 bits, the lowest first.
 acrobot_status_t acrobot_action_space_init_with(acrobot_action_space_t *action_space,
-                                                const uint32_t *seed,
-                                                size_t seed_words);
+    const uint32_t *seed, size_t seed_words);
 
 // Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
 acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_space, uint8_t *action);
 
 // Draws an action for each acrobot of a batch: `sample()` of Gymnasium's `MultiDiscrete`.
 acrobot_status_t acrobot_action_space_sample_each(acrobot_action_space_t *action_space,
-                                                  uint8_t *actions,
-                                                  size_t count);
+    uint8_t *actions, size_t count);
 
 // ACROBOT_BATCH_SIZE(count), or with `own_params` ACROBOT_BATCH_OWN_SIZE(count), but at most
 // SIZE_MAX.
@@ -1000,111 +908,83 @@ size_t acrobot_batch_size(size_t count, bool own_params);
 // parameters, in initial states. Acrobot `i` is seeded with NumPy's
 // `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address. With `own_params`
 // acrobots can have different parameters.
-acrobot_status_t acrobot_batch_init(void *memory,
-                                    size_t size,
-                                    size_t count,
-                                    int task,
-                                    bool own_params,
-                                    uint64_t seed,
-                                    acrobot_batch_t **batch);
+acrobot_status_t acrobot_batch_init(void *memory, size_t size, size_t count, int task,
+    bool own_params, uint64_t seed, acrobot_batch_t **batch);
 
 // Applies an action to each acrobot for one dt. If one is rejected, no acrobot steps, but
 // `terminated` and `truncated` become false.
-acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch,
-                                    const uint8_t *actions,
-                                    const acrobot_batch_results_t *results,
-                                    size_t count);
+acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch, const uint8_t *actions,
+    const acrobot_batch_results_t *results, size_t count);
 
 // As acrobot_batch_step, with any finite torques, N m.
-acrobot_status_t acrobot_batch_step_torque(acrobot_batch_t *batch,
-                                           const float *torques,
-                                           const acrobot_batch_results_t *results,
-                                           size_t count);
+acrobot_status_t acrobot_batch_step_torque(acrobot_batch_t *batch, const float *torques,
+    const acrobot_batch_results_t *results, size_t count);
 
 acrobot_status_t acrobot_batch_observe(const acrobot_batch_t *batch,
-                                       acrobot_observation_t *observations,
-                                       size_t count);
+    acrobot_observation_t *observations, size_t count);
 
 acrobot_status_t acrobot_batch_settings(const acrobot_batch_t *batch,
-                                        acrobot_batch_settings_t *settings);
+    acrobot_batch_settings_t *settings);
 
 // As acrobot_reset, for each acrobot.
 acrobot_status_t acrobot_batch_reset(acrobot_batch_t *batch);
 
 // As acrobot_reset_with, for each acrobot, seeded as acrobot_batch_init does.
 acrobot_status_t acrobot_batch_reset_with(acrobot_batch_t *batch,
-                                          const acrobot_reset_options_t *options,
-                                          acrobot_error_t *error);
+    const acrobot_reset_options_t *options, acrobot_error_t *error);
 
 // As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.
-acrobot_status_t acrobot_batch_reset_with_seeds(acrobot_batch_t *batch,
-                                                const uint64_t *seeds,
-                                                size_t count);
+acrobot_status_t acrobot_batch_reset_with_seeds(acrobot_batch_t *batch, const uint64_t *seeds,
+    size_t count);
 
 // As acrobot_batch_reset_with, where `mask` is true. A byte that is neither true nor false is
 // rejected.
-acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch,
-                                            const bool *mask,
-                                            size_t count,
-                                            const acrobot_reset_options_t *options,
-                                            acrobot_error_t *error);
+acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch, const bool *mask, size_t count,
+    const acrobot_reset_options_t *options, acrobot_error_t *error);
 
 // When acrobots are reset whose episode has ended: an ACROBOT_AUTORESET.
-acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
-                                             int autoreset,
-                                             acrobot_error_t *error);
+acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch, int autoreset,
+    acrobot_error_t *error);
 
 // As acrobot_set_max_steps, for all acrobots.
-acrobot_status_t acrobot_batch_set_max_steps(acrobot_batch_t *batch,
-                                             uint32_t max_steps,
-                                             acrobot_error_t *error);
+acrobot_status_t acrobot_batch_set_max_steps(acrobot_batch_t *batch, uint32_t max_steps,
+    acrobot_error_t *error);
 
-acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch,
-                                     size_t index,
-                                     acrobot_state_t *state);
+acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch, size_t index,
+    acrobot_state_t *state);
 
 // The number of its steps stays.
-acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
-                                         size_t index,
-                                         const acrobot_state_t *state,
-                                         acrobot_error_t *error);
+acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch, size_t index,
+    const acrobot_state_t *state, acrobot_error_t *error);
 
 // The steps of an acrobot since its last reset.
-acrobot_status_t acrobot_batch_elapsed_steps(const acrobot_batch_t *batch,
-                                             size_t index,
-                                             uint32_t *steps);
+acrobot_status_t acrobot_batch_elapsed_steps(const acrobot_batch_t *batch, size_t index,
+    uint32_t *steps);
 
 // Whether the episode of an acrobot has ended and it waits for a reset.
 acrobot_status_t acrobot_batch_is_done(const acrobot_batch_t *batch, size_t index, bool *is_done);
 
-acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch,
-                                      size_t index,
-                                      acrobot_params_t *params);
+acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch, size_t index,
+    acrobot_params_t *params);
 
 // As acrobot_set_params, for one acrobot of a batch with own parameters.
-acrobot_status_t acrobot_batch_set_params(acrobot_batch_t *batch,
-                                          size_t index,
-                                          const acrobot_params_t *params,
-                                          acrobot_error_t *error);
+acrobot_status_t acrobot_batch_set_params(acrobot_batch_t *batch, size_t index,
+    const acrobot_params_t *params, acrobot_error_t *error);
 
 // As acrobot_set_params, for all acrobots.
 acrobot_status_t acrobot_batch_set_all_params(acrobot_batch_t *batch,
-                                              const acrobot_params_t *params,
-                                              acrobot_error_t *error);
+    const acrobot_params_t *params, acrobot_error_t *error);
 
 // From now on each reset of a batch with own parameters draws them, after the initial state and
 // from the same random numbers. Zeros end it.
-acrobot_status_t acrobot_batch_set_draws(acrobot_batch_t *batch,
-                                         const acrobot_draws_t *draws,
-                                         acrobot_error_t *error);
+acrobot_status_t acrobot_batch_set_draws(acrobot_batch_t *batch, const acrobot_draws_t *draws,
+    acrobot_error_t *error);
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
 // Writes a snapshot into `bytes`, which has `size` bytes: ACROBOT_SNAPSHOT_SIZE is enough. An
 // acrobot that loads it continues with the same bits, in any language.
-acrobot_status_t acrobot_save(const acrobot_t *acrobot,
-                              uint8_t *bytes,
-                              size_t size,
-                              size_t *length);
+acrobot_status_t acrobot_save(const acrobot_t *acrobot, uint8_t *bytes, size_t size,
+    size_t *length);
 #endif
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
@@ -1119,28 +999,21 @@ size_t acrobot_batch_snapshot_size(size_t count);
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
 // As acrobot_save, for a batch.
-acrobot_status_t acrobot_batch_save(const acrobot_batch_t *batch,
-                                    uint8_t *bytes,
-                                    size_t size,
-                                    size_t *length);
+acrobot_status_t acrobot_batch_save(const acrobot_batch_t *batch, uint8_t *bytes, size_t size,
+    size_t *length);
 #endif
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
 // The number of acrobots in a snapshot of a batch, and whether they have own parameters.
 // acrobot_batch_size of these is the memory that acrobot_batch_load needs.
-acrobot_status_t acrobot_batch_saved_count(const uint8_t *bytes,
-                                           size_t length,
-                                           size_t *count,
-                                           bool *own_params);
+acrobot_status_t acrobot_batch_saved_count(const uint8_t *bytes, size_t length, size_t *count,
+    bool *own_params);
 #endif
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
 // Makes a batch of a snapshot in `memory`, which has `size` bytes. `batch` receives its address.
-acrobot_status_t acrobot_batch_load(void *memory,
-                                    size_t size,
-                                    const uint8_t *bytes,
-                                    size_t length,
-                                    acrobot_batch_t **batch);
+acrobot_status_t acrobot_batch_load(void *memory, size_t size, const uint8_t *bytes, size_t length,
+    acrobot_batch_t **batch);
 #endif
 
 #if defined(__wasm__)

@@ -43,13 +43,20 @@ __attribute__((noinline, unused)) static bool same(const void *left, const void 
     return true;
 }
 
+// What follows the start of a text, or null where it starts in another way.
+static inline const char *after(const char *text, const char *start)
+{
+    while (*start != 0 && *text == *start) {
+        text++;
+        start++;
+    }
+    return *start == 0 ? text : NULL;
+}
+
 static inline bool same_text(const char *left, const char *right)
 {
-    while (*left != 0 && *left == *right) {
-        left++;
-        right++;
-    }
-    return *left == *right;
+    const char *rest = after(left, right);
+    return rest != NULL && *rest == 0;
 }
 
 __attribute__((unused)) static acrobot_error_t error;
@@ -57,17 +64,15 @@ __attribute__((unused)) static acrobot_error_t error;
 // Whether a number was rejected with this message, up to its value.
 __attribute__((unused)) static void expect_message(acrobot_status_t status, const char *message)
 {
-    const char *parts[] = {error.name, " must be ", error.rule, ", got "}, *at = message;
+    const char *parts[] = {error.name, " must be ", error.rule, ", got "}, *rest = message;
     CHECK(status == ACROBOT_ERROR_OUT_OF_RANGE);
-    for (int i = 0; i < 4; i++) {
-        for (const char *part = parts[i]; *part != 0; part++, at++) {
-            if (*part != *at) {
-                print(message);
-                print(" is not what the error says\n");
-                failures++;
-                return;
-            }
-        }
+    for (int i = 0; i < 4 && rest != NULL; i++) {
+        rest = after(rest, parts[i]);
+    }
+    if (rest == NULL) {
+        print(message);
+        print(" is not what the error says\n");
+        failures++;
     }
 }
 

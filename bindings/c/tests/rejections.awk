@@ -1,5 +1,5 @@
-# Turns the rejected calls of tests/data/rejections.jsonl into C: misuse.c defines a macro for each
-# kind of call.
+# Turns the rejected calls of tests/data/rejections.jsonl into C: rejections.c defines a macro for
+# each kind of call.
 {
   match($0, /"call":"[a-z]+"/); call = substr($0, RSTART + 8, RLENGTH - 9)
   match($0, /"message":"[^"]*"/); message = substr($0, RSTART + 10, RLENGTH - 10)

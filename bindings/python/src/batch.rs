@@ -44,13 +44,7 @@ impl Batch {
             "NextStep" => Autoreset::NextStep,
             "SameStep" => Autoreset::SameStep,
             "Disabled" => Autoreset::Disabled,
-            _ => {
-                return Err(wrong(
-                    "autoreset_mode",
-                    "NextStep, SameStep or Disabled",
-                    autoreset_mode,
-                ));
-            }
+            mode => return Err(wrong("autoreset_mode", "NextStep, SameStep or Disabled", mode)),
         };
         let ((name, arithmetic), len) = (kind, num_envs.get() as usize);
         let seed = seed.map_or(Ok(SeedSequence::new(0)), parse)?;

@@ -144,12 +144,9 @@ fn narrow<T, U>(
 ) -> PyResult<T> {
     narrow().map_err(|error| {
         let error = wide().err().unwrap_or(error);
-        match error.name() {
-            "the largest torque" => named(error, "max_torque"),
-            "the largest torque minus the target's" => {
-                named(error, "max_torque minus the target's")
-            }
-            _ => invalid(error, None),
+        match error.name().strip_prefix("the largest torque") {
+            Some(rest) => named(error, format_args!("max_torque{rest}")),
+            None => invalid(error, None),
         }
     })
 }

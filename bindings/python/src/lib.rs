@@ -13,7 +13,7 @@ use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::render::{Figure, Frame};
 use acrobot::task::{AnyTask, Balance, Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::{Error, Params, State};
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -45,6 +45,12 @@ mod _native {
     #[pymodule_export]
     use super::single::Acrobot;
     use super::*;
+
+    /// The place of the first number, if any, that is NaN or larger than the largest.
+    #[pyfunction]
+    fn first_beyond(numbers: PyReadonlyArray1<'_, f64>, largest: f64) -> Option<usize> {
+        numbers.as_array().iter().position(|number| number.is_nan() || number.abs() > largest)
+    }
 
     /// Checks the bounds of initial states, rad and rad/s.
     #[pyfunction]

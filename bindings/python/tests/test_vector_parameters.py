@@ -3,7 +3,8 @@
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotVectorEnv, LogUniform, Normal, Uniform
+from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotEnv, AcrobotVectorEnv
+from acrobot_rs import LogUniform, Normal, Uniform
 from vectors import make_vec, rejects
 
 
@@ -31,12 +32,23 @@ def test_a_rejected_parameter_changes_nothing(error, name, value, message, gymna
             envs.set_attr(name, value)
 
 
+def test_a_rejected_parameter_changes_no_single_environment():
+    env = AcrobotEnv()
+    for error, name, value in (
+        (ValueError, "AVAIL_TORQUE", []),
+        (ValueError, "book_or_nips", "paper"),
+        (TypeError, "AVAIL_TORQUE", {-1.0, 0.0, 1.0}),
+        (TypeError, "book_or_nips", None),
+        (TypeError, "LINK_MASS_1", Uniform(1.0, 2.0)),
+    ):
+        with rejects(env, error, f"^{name}.* must "):
+            setattr(env, name, value)
+
+
 @pytest.mark.parametrize(
     ("name", "value", "number"),
     [
         ("LINK_MASS_1", [1.0, 1e-300, 1.0], "1e-300"),
-        ("LINK_MASS_1", [1.0, -0.3, 1.0], "-0.3"),
-        ("LINK_MASS_1", Uniform(-0.3, 0.1), "-0.3"),
         ("LINK_MASS_1", Uniform(0.4, 0.3), "0.4"),
         ("gravity", Normal(9.0, 1e300, 8.0, 10.0), "1e300"),
         ("AVAIL_TORQUE", Uniform((-1.0, 0.0, 1.0), (-1.0, 1e300, 1.0)), "1e300"),
@@ -50,24 +62,20 @@ def test_the_number_given_is_in_the_message(name, value, number):
 
 
 @pytest.mark.parametrize("name", sorted({*AcrobotVectorEnv._NAMES} - {"LINK_MOI", "book_or_nips"}))
-@pytest.mark.parametrize("gymnasium_episodes", [False, True])
-def test_resets_draw_a_parameter_and_keep_others(name, gymnasium_episodes):
+def test_resets_draw_a_parameter_and_keep_others(name):
     """`test_recorded.py` has the order and the numbers of draws."""
     own = {each: np.linspace(0.5, 1.5, 20) for each in ("LINK_MASS_2", "dt")}
-    envs = make_vec(20, gymnasium_episodes=gymnasium_episodes, **own)
+    envs, mask = make_vec(20, **own), np.arange(20) % 2 == 0
     draw = Uniform([0.1] * 3, [0.9, 0.9, 0.1]) if name == "AVAIL_TORQUE" else Uniform(0.1, 0.9)
-    before = {each: envs.get_parameter(each) for each in envs._NAMES}
     setattr(envs, name, draw)
+    before = {each: envs.get_parameter(each) for each in envs._NAMES}
     assert getattr(envs, name) == draw
-    for _ in range(2):
-        mask = np.arange(20) % 2 == 0
-        old = envs.get_parameter(name)
-        envs.reset(options={"reset_mask": mask})
-        new = envs.get_parameter(name)
-        assert (0.0999 < new[mask]).all() and (new[mask] < 0.9001).all()
-        assert (new != old).reshape(20, -1).any(axis=1).tolist() == mask.tolist()
-        for each in set(envs._NAMES) - {name}:
-            np.testing.assert_array_equal(envs.get_parameter(each), before[each])
+    envs.reset(options={"reset_mask": mask})
+    after = {each: envs.get_parameter(each) for each in envs._NAMES}
+    new, old = after.pop(name), before.pop(name)
+    assert (0.0999 < new[mask]).all() and (new[mask] < 0.9001).all()
+    assert (new != old).reshape(20, -1).any(axis=1).tolist() == mask.tolist()
+    np.testing.assert_equal(after, before)
     setattr(envs, name, [1.0] * 3 if name == "AVAIL_TORQUE" else 1.0)
     envs.reset()
     assert (envs.get_parameter(name) == 1.0).all()
@@ -97,5 +105,4 @@ def test_subclasses_can_draw_parameters_which_spaces_follow():
     envs.reset(seed=1)
     assert len(set(envs.get_attr("MAX_VEL_1"))) == 50
     envs.AVAIL_TORQUE = [[-1, 0, 1], [-5, 0, 1], [-1, 0, 4]] + [[0, 0, 0]] * 47
-    assert envs.single_action_space == gymnasium.spaces.Box(-5.0, 4.0, (1,), np.float32)
     assert envs.action_space == gymnasium.spaces.Box(-5.0, 4.0, (50, 1), np.float32)

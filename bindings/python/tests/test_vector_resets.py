@@ -1,7 +1,6 @@
 """Streams, seeds, masks and autoresets are the documented ones, and with Gymnasium's episodes those
 of SyncVectorEnv."""
 
-import copy
 import math
 import types
 
@@ -15,21 +14,12 @@ from gymnasium.vector import AutoresetMode
 from vectors import MODES, assert_equal, assert_resets_equal, different, make_vec, pair, rejects
 
 
-def test_environments_draw_from_the_seed_s_children():
-    envs = make_vec(100)
-    for seed in [0, 42, 2**100 + 3]:
-        envs.reset(seed=seed)
-        children = np.random.SeedSequence(seed).spawn(100)
-        states = [np.random.default_rng(child).uniform(-0.1, 0.1, 4) for child in children]
-        assert (envs.state == np.float32(states)).all() and envs.np_random_seed == seed
-    assert (make_vec(5).reset()[0] != make_vec(5).reset()[0]).any(), "random without a seed"
-
-
 def test_rejected_seeds_change_nothing():
-    envs = make_vec(2)
-    single = acrobot_rs.AcrobotEnv()
+    assert (make_vec(5).reset()[0] != make_vec(5).reset()[0]).any(), "random without a seed"
+    envs, single = make_vec(2), acrobot_rs.AcrobotEnv()
     for each in (single, envs):
         assert (each.reset(seed=np.uint8(255))[0] == each.reset(seed=255)[0]).all()
+        assert each.np_random_seed == 255
     bad_seeds = (-1, "4", 4.0, np.True_, 10**5000)
     for seed in (*bad_seeds, [1], (1,) * 3, *([1, bad] for bad in bad_seeds)):
         with rejects(envs, (ValueError, gymnasium.error.Error)):
@@ -41,27 +31,6 @@ def test_invalid_masks_are_rejected():
     for mask in (None, [1, 0], True, [False, False], [True], [True] * 3, [[True, False]]):
         with rejects(envs, ValueError, r"reset_mask must be .* of shape \(2,\) .*, got"):
             envs.reset(seed=1, options={"reset_mask": mask})
-
-
-def test_a_mask_selects_the_environments_to_seed_and_reset():
-    """In float32. With Gymnasium's episodes another test compares with SyncVectorEnv."""
-    envs = make_vec(40)
-    envs.reset(seed=1)
-    envs.step([2] * 40)
-    mask = np.arange(80) % 3 == 0
-    seeds = [None if i == 3 else 2**70 + i for i in range(40)]
-    children = np.random.SeedSequence(5).spawn(40)
-    for seed, streams in [(5, children), (seeds, seeds)]:
-        before, twin = envs.state, copy.deepcopy(envs)
-        observations, infos = envs.reset(seed=seed, options={"reset_mask": mask[::2], "low": -0.5})
-        twin.reset(options={"low": -0.5})
-        generators = [np.random.default_rng(stream) for stream in streams]
-        seeded = np.float32([rng.uniform(-0.5, 0.1, 4) for rng in generators])
-        if streams is seeds:
-            seeded[3] = twin.state[3]  # continues its stream
-        assert infos == {} and envs.np_random_seed == 5
-        assert (envs.state == np.where(mask[::2, None], seeded, before)).all()
-        assert (observations[:, 4:] == envs.state[:, 2:]).all()
 
 
 def test_other_bytes_than_0_and_1_in_a_mask_become_1():
@@ -126,11 +95,8 @@ def test_observations_of_initial_states_bit_identically(mode):
     """Computed in float32: one in 500 differs from the rounded sines of float64."""
     theirs, ours = pair(500, mode, max_episode_steps=1)
     assert_resets_equal(theirs, ours, seed=1)
-    mask = np.arange(500) % 2 == 0
-    for bounds in ({"low": -0.4, "high": 0.7}, {"low": -9.0, "high": 9.0}):
-        assert_resets_equal(theirs, ours, options=bounds)
-        for some in (mask, ~mask):
-            assert_resets_equal(theirs, ours, options={**bounds, "reset_mask": some})
+    options = {"low": -9.0, "high": 9.0, "reset_mask": np.arange(500) % 2 == 0}
+    assert_resets_equal(theirs, ours, options=options)
     for actions in np.random.default_rng(0).integers(3, size=(5, 500)):
         assert_equal(theirs.step(actions), ours.step(actions))
         if mode is AutoresetMode.DISABLED:

@@ -15,7 +15,7 @@ import numpy as np
 from gymnasium.error import Error
 from numpy.typing import NDArray
 
-from acrobot_rs._native import check_bounds
+from acrobot_rs._native import check_bounds, first_beyond
 
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 
@@ -78,11 +78,11 @@ def numbers(
 def finite(name: str, rule: str, value: Any, shape: Any = (), largest: float = MAX) -> Any:
     """As :func:`numbers`, in ``float64``: each is finite, and at most the largest."""
     given = numbers(name, rule, value, shape)
-    is_valid = np.abs(given) <= np.float64(largest)  # false for NaN
-    if not is_valid.all():
-        index = tuple(np.argwhere(~is_valid)[0].tolist())
-        raise must_be(name, rule, f"{given[index]}{f' at {list(index)}' if index else ''}")
-    return given.astype(np.float64, copy=False)
+    floats = given.astype(np.float64, copy=False)
+    if (place := first_beyond(floats.ravel(), largest)) is not None:
+        index = tuple(map(int, np.unravel_index(place, given.shape)))
+        raise must_be(name, rule, f"{given[index]}{f' at {[*index]}' if index else ''}")
+    return floats
 
 
 def float32(name: str, rule: str, value: Any, shape: tuple[int, ...] = ()) -> Any:

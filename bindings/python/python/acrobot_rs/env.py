@@ -101,17 +101,18 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             rule = "four finite numbers in the range of float32"
             given = finite("state", rule, options["state"], (4,), LARGEST)
         super().reset(seed=seed)
-        return self._begin(low, high, given), {}
-
-    def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
-        """Draw an initial state, which a given one replaces, and observe it."""
-        # Gymnasium rounds initial states to float32.
-        s = self.np_random.uniform(low, high, 4).astype(np.float32)
-        self.state = s if given is None else given
-        s = s if given is None else given.astype(np.float32)
+        drawn = self._draw(low, high)
+        self.state = state = drawn if given is None else given
+        if self._TASK != "gymnasium":
+            return self._native.observation(), {}
+        s = state.astype(np.float32)
         # Gymnasium's calls of NumPy, whose float32 sines are its own.
         sines = [function(angle) for angle in s[:2] for function in (np.cos, np.sin)]
-        return np.array([*sines, *s[2:]], dtype=np.float32)
+        return np.array([*sines, *s[2:]], dtype=np.float32), {}
+
+    def _draw(self, low: float, high: float) -> NDArray[Any]:
+        """An initial state, which Gymnasium rounds to float32."""
+        return self.np_random.uniform(low, high, 4).astype(np.float32)
 
     def step(
         self, action: ArrayLike
@@ -161,13 +162,8 @@ class AcrobotContinuousEnv(AcrobotEnv):
         return torque
 
 
-class AcrobotBalanceEnv(AcrobotContinuousEnv):
-    """Stay upright: :class:`AcrobotContinuousEnv` with a motor of 10 N m and steps of 0.02 s.
-
-    The reward is ``(2 - cos(theta1) - cos(theta1 + theta2)) / 4``: 1 upright, 0 hanging. An episode
-    begins upright, plus a uniform draw from -0.05 to 0.05 for each number of the state. No state
-    ends it; ``gymnasium.make`` truncates it after 500 steps.
-    """
+class Balance(Parameters):
+    """The parameters of the task to stay upright."""
 
     dt = 0.02
     AVAIL_TORQUE = (-10.0, 0.0, 10.0)
@@ -175,8 +171,16 @@ class AcrobotBalanceEnv(AcrobotContinuousEnv):
     _TASK = "balance"
     _BOUND = BALANCE_BOUND
 
-    def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
-        drawn = self.np_random.uniform(low, high, 4).astype(np.float32)
+
+class AcrobotBalanceEnv(Balance, AcrobotContinuousEnv):
+    """Stay upright: :class:`AcrobotContinuousEnv` with a motor of 10 N m and steps of 0.02 s.
+
+    The reward is ``(2 - cos(theta1) - cos(theta1 + theta2)) / 4``: 1 upright, 0 hanging. An episode
+    begins upright, plus a uniform draw from -0.05 to 0.05 for each number of the state. No state
+    ends it; ``gymnasium.make`` truncates it after 500 steps.
+    """
+
+    def _draw(self, low: float, high: float) -> NDArray[Any]:
+        drawn = super()._draw(low, high)
         drawn[0] += np.float32(np.pi)
-        self.state = drawn if given is None else given
-        return self._native.observation()
+        return drawn

@@ -59,10 +59,8 @@ class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
     All else is as in :class:`acrobot_rs.AcrobotEnv`. The parameters are those of :class:`Swingup`.
     """
 
-    def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
-        drawn = np.array([*self.np_random.uniform(low, high, 2), 0.0, 0.0])
-        self.state = drawn if given is None else given
-        return self._native.observation()
+    def _draw(self, low: float, high: float) -> NDArray[np.float64]:
+        return np.array([*self.np_random.uniform(low, high, 2), 0.0, 0.0])
 
 
 class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):

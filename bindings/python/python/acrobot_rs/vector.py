@@ -13,8 +13,9 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
-from acrobot_rs._native import BALANCE_BOUND, MAX_STEPS, Batch
+from acrobot_rs._native import MAX_STEPS, Batch
 from acrobot_rs.arrays import Seed, must_be, numbers, read_only
+from acrobot_rs.env import Balance
 from acrobot_rs.parameters import Drawn, Parameters
 
 Floats = NDArray[np.float32]
@@ -293,12 +294,6 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv, VectorEnv[Floats, NDArray[Any
 
 
 class AcrobotBalanceVectorEnv(
-    AcrobotContinuousVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]
+    Balance, AcrobotContinuousVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]
 ):
     """Many :class:`acrobot_rs.AcrobotBalanceEnv`, without ``gymnasium_episodes``."""
-
-    dt = 0.02
-    AVAIL_TORQUE = (-10.0, 0.0, 10.0)
-
-    _TASK = "balance"
-    _BOUND = BALANCE_BOUND

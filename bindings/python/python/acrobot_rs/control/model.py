@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -146,6 +147,8 @@ def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) 
     except ValueError:
         shapes = [array.shape for array in arrays.values()]
         raise must_be(", ".join(arrays), "arrays that broadcast", shapes) from None
-    rows = np.concatenate([np.broadcast_to(x, (*others, x.shape[-1])) for x in parts], axis=-1)
-    rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]))
+    ends = [*itertools.accumulate(part.shape[-1] for part in parts)]
+    rows = np.empty((math.prod(others), ends[-1]))
+    for part, end in zip(parts, ends):
+        rows.reshape(*others, ends[-1])[..., end - part.shape[-1] : end] = part
     return _native.compute(function, acrobot_of(env)._native, rows).reshape((*others, *shape))

@@ -66,7 +66,8 @@ class Plan:
         """The torque at a step, counted from 0, or after the plan, N m. It is not limited."""
         knot = None
         if integer("step", step, 0, 2**63 - 1) < len(self):
-            knot = [*self.states[step], self.torques[step], *self.gains[step]]
+            torque = self.torques[step].item()
+            knot = [*self.states[step].tolist(), torque, *self.gains[step].tolist()]
         return _native.plan_torque(knot, self.after, _four(state))
 
     def _rows(self) -> NDArray[np.float32]:
