@@ -24,8 +24,8 @@ after(async () => {
 });
 
 /**
- * Opens the page and calls `play` once it and the planner have loaded. Asserts that its console has no errors or
- * warnings, and that it requests only its own files.
+ * Opens the page and calls `play` once it and the planner have loaded. Asserts that its console has
+ * no errors or warnings, and that it requests only its own files.
  */
 export async function open({ hash = "", prepare, starts = true, ...options }, play) {
   const permissions = ["clipboard-read", "clipboard-write"];
