@@ -1,6 +1,6 @@
 // Keys, mouse and fingers: who holds a torque, and who pulls the acrobot.
 
-import { nearest } from "./push.js";
+import { nearest } from "./places.js";
 import { placeAt } from "./stage.js";
 
 /** Where keys pull the tip to, as seen from it, m. */

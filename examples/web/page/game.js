@@ -23,6 +23,11 @@ export const UNITS = 4096;
 /** In shorter steps, s, a display shows no state between two of them. */
 const FRAME = 0.025;
 
+/** Whether a state is upright: within 0.1 rad and 0.5 rad/s. */
+export const isUpright = ({ theta1, theta2, ...velocities }) =>
+  Math.min(-Math.cos(theta1), Math.cos(theta2)) > Math.cos(0.1) &&
+  Object.values(velocities).every((velocity) => Math.abs(velocity) < 0.5);
+
 /** The motor's torque at a level from −FULL to FULL, N m. */
 export const torqueOf = (level, limit) => (level / FULL) * limit;
 

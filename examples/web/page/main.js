@@ -5,12 +5,11 @@ import { animationOf } from "./animation.js";
 import { CHARTS, number } from "./charts.js";
 import { connectControls } from "./controls.js";
 import { download } from "./files.js";
-import { FULL, Game, UNITS, noisy } from "./game.js";
+import { FULL, Game, UNITS, isUpright, noisy } from "./game.js";
 import { actionsOf, decodeRun, encodeRun } from "./link.js";
 import { attempt, parametersPanel } from "./parameters.js";
-import { PlannerPolicy, isUpright } from "./planner.js";
+import { placesOf } from "./places.js";
 import { minus } from "./plot.js";
-import { placesOf, pull } from "./push.js";
 import { BALANCE, DEFAULTS, LIMIT, isSame, parseSeed } from "./settings.js";
 import { drawRival, drawStage, placeAt } from "./stage.js";
 import { trainingPanel } from "./training.js";
@@ -24,9 +23,11 @@ const PERIOD = 30;
 
 function start() {
   const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
-  const planner = new PlannerPolicy();
   /** The acrobot to compare with. */
-  const rival = { game: new Game(42n, { ...DEFAULTS }), planner: new PlannerPolicy() };
+  const rival = new Game(42n, { ...DEFAULTS });
+  /** The module of the planner and of pulls, once it has been loaded, and each game's planner. */
+  let control = null;
+  const planners = new Map();
   let learnt = learner;
   const POLICIES = {
     bang_bang: bangBang,
@@ -55,11 +56,10 @@ function start() {
 
   // ---- the episode
 
-  const level = (policy, game, planner) => {
-    const isPulled = grip !== null;
+  const level = (policy, game) => {
     const decided = {
       keys: () => FULL * (Number(held.right) - Number(held.left)),
-      planner: () => planner.act(game, isPulled),
+      planner: () => planners.get(game)?.act(game, grip !== null) ?? 0,
     }[policy] ?? (() => FULL * (POLICIES[policy](game.acrobot) - 1));
     return noisy(decided(), game.params);
   };
@@ -71,9 +71,10 @@ function start() {
     return placesOf(game.acrobot.state, game.params)[1].map((x, i) => x + offset[i]);
   };
   const push = () => {
-    if (grip === null) return null;
+    if (grip === null || control === null) return null;
     const { state, params } = game.acrobot;
-    const units = pull(grip.point, target(), state, params).map((x) => Math.round(UNITS * x) || 0);
+    const change = control.pull(grip.point, target(), state, params);
+    const units = change.map((x) => Math.round(UNITS * x) || 0);
     return units.some((unit) => unit !== 0) ? units : null;
   };
 
@@ -87,13 +88,13 @@ function start() {
         return pause("The replay has ended. Press Restart, or an arrow and Play.");
       }
       const pushed = replays ? recorded.pushes[index] : push();
-      game.step(replays ? recorded.levels[index] : level(policy, game, planner), pushed);
+      game.step(replays ? recorded.levels[index] : level(policy, game), pushed);
       const other = $("rival").value;
-      if (other !== "") rival.game.step(level(other, rival.game, rival.planner), pushed);
+      if (other !== "") rival.step(level(other, rival), pushed);
     } catch (error) {
       return pause(minus(error.message)); // With extreme physics an energy is infinite.
     }
-    upright = isUpright(game.numbers) ? upright + game.params.dt : 0;
+    upright = isUpright(game.acrobot.state) ? upright + game.params.dt : 0;
     shown = 0;
     if (game.end === null) return;
     const own = before > 0 ? `, ${game.steps - before} of them yours` : "";
@@ -108,8 +109,8 @@ function start() {
   const begin = (seed, params = game.params, run = replayed()) => {
     game.begin(seed, params, run?.start);
     game.free = $("policy").value === "planner" || (run !== null && actionsOf(run) === null);
-    rival.game.begin(seed, params, run?.start);
-    rival.game.free = $("rival").value === "planner";
+    rival.begin(seed, params, run?.start);
+    rival.free = $("rival").value === "planner";
     upright = before = 0;
     shown = params.dt;
     nextAt = Infinity;
@@ -131,7 +132,7 @@ function start() {
   /** Changes the parameters at once, except where another episode must begin. */
   const setPhysics = (params) => {
     if (game.steps === 0 || game.end !== null || replayed()) return begin(game.seed, params);
-    for (const each of [game, rival.game]) each.change(params);
+    for (const each of [game, rival]) each.change(params);
     shown = params.dt;
     address();
     changed();
@@ -214,7 +215,7 @@ function start() {
     charts.forEach((show) => show(game));
     const verdict = ({ steps, end }) =>
       ({ goal: `Goal! ${steps} steps`, limit: "Out of time" })[end];
-    const other = rival.game;
+    const rivalVerdict = verdict(rival) ?? String(rival.steps);
     const texts = {
       "step": String(game.steps),
       "return": game.free ? `${upright.toFixed(1)} s` : minus(String(game.return)),
@@ -223,7 +224,7 @@ function start() {
       "pause": playing ? "Pause" : "Play",
       "verdict": verdict(game) ?? "",
       "rival-label": `Grey: ${$("rival").selectedOptions[0].textContent}`,
-      "rival-steps": isUpright(other.numbers) ? "upright" : verdict(other) ?? `${other.steps}`,
+      "rival-steps": isUpright(rival.acrobot.state) ? "upright" : rivalVerdict,
     };
     for (const [id, text] of Object.entries(texts)) write(id, text);
     $("rival-score").hidden = $("rival").value === "";
@@ -260,16 +261,17 @@ function start() {
       next();
       $("link-field").hidden = hidden;
     }
-    const plans = $("policy").value === "planner";
+    const planner = $("policy").value === "planner" ? planners.get(game) : undefined;
     const pulled = grip && { point: grip.point, target: target() };
     const part = calm.matches ? 1 : Math.min(shown / dt, 1);
-    drawStage(game, part, plans ? planner.path : [], pulled);
-    drawRival($("rival").value === "" ? null : rival.game, part);
+    drawStage(game, part, planner?.path ?? [], pulled);
+    drawRival($("rival").value === "" ? null : rival, part);
     // Plots take longer than all else, so each frame draws one at most. Texts come last, because
     // the size of a canvas is only known after the layout.
     if (dirty && (!playing || now - updated >= PERIOD)) update(now);
-    write("thought", plans ? (planner.thinks ? "Planning…" : planner.message) : "");
-    $("thought").classList.toggle("thinks", plans && planner.thinks);
+    const thinks = planner?.thinks ?? false;
+    write("thought", thinks ? "Planning…" : planner?.message ?? "");
+    $("thought").classList.toggle("thinks", thinks);
   };
 
   // ---- keys and buttons
@@ -403,6 +405,13 @@ function start() {
   if (!playing) say(`Press Play to watch Bang-bang. ${takeOver}`);
   open(hash);
   requestAnimationFrame(frame);
+
+  // The page begins without it, because it is large.
+  import("./planner.js").then((module) => {
+    control = module;
+    for (const each of [game, rival]) planners.set(each, new control.PlannerPolicy());
+    $("balance").disabled = false;
+  }, ({ message }) => say(`The planner could not be loaded: ${message}.`));
 }
 
 try {

@@ -1,15 +1,13 @@
 // Plans outside the page's thread. It receives the parameters, a torque and a state, and posts a
-// plan, or null, with the milliseconds it took, and the gain of the regulator after the plan.
+// plan, or null, with the milliseconds it took.
 
-import { Planner, regulator } from "./acrobot-rs/control.js";
+import { Planner } from "./acrobot-rs/control.js";
 
 /** Durations of plans, s: the shortest in which a try succeeds. */
 const HORIZONS = [1.6, 3.2, 6.4, 12.8, 25.6];
 /** The most steps of a plan, so that a tiny time step does not take minutes. */
 const STEPS = 3000;
 const TRIES = 6;
-/** The planner's weights. */
-const EYE = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
 
 /** The last request. Those before it are obsolete. */
 let last = null;
@@ -25,9 +23,8 @@ function plan() {
       const steps = Math.min(Math.ceil(seconds / params.dt), STEPS);
       plan ??= planner.plan(start, { steps, tries: TRIES, seed });
     }
-    const duration = performance.now() - began;
-    postMessage({ id, plan, gain: regulator(params, EYE, 1).gain, duration });
     planner.free();
+    postMessage({ id, plan, duration: performance.now() - began });
   } catch ({ message }) {
     postMessage({ id, error: message });
   }

@@ -2,35 +2,11 @@
 // M(θ)⁻¹ Jᵀ F dt, for the mass matrix M and the point's Jacobian J. The force F is that after the
 // step, so that the spring is stable with any dt.
 
+import { massMatrix } from "./acrobot-rs/control.js";
+import { placeOf, placesOf } from "./places.js";
+
 /** The spring, N/m, and its damper, N s/m. */
 const [STIFFNESS, DAMPING] = [60, 8];
-
-/** The elbow and the tip, m, as seen from the fixed joint. */
-export function placesOf({ theta1, theta2 }, { length1, length2 }) {
-  const both = theta1 + theta2;
-  const elbow = [length1 * Math.sin(theta1), -length1 * Math.cos(theta1)];
-  return [elbow, [elbow[0] + length2 * Math.sin(both), elbow[1] - length2 * Math.cos(both)]];
-}
-
-/** The point of the links that is closest to a place: its `link`, and the `part` of its length. */
-export function nearest(state, params, [x, y]) {
-  const [elbow, tip] = placesOf(state, params);
-  const points = [[[0, 0], elbow], [elbow, tip]].map(([from, to], link) => {
-    const [along, across] = [to[0] - from[0], to[1] - from[1]];
-    const scalar = (x - from[0]) * along + (y - from[1]) * across;
-    const part = Math.max(0, Math.min(1, scalar / (along ** 2 + across ** 2)));
-    const distance = Math.hypot(x - from[0] - part * along, y - from[1] - part * across);
-    return { link, part, distance };
-  });
-  return points[0].distance < points[1].distance ? points[0] : points[1];
-}
-
-/** Where a point of a link is, m. */
-export function placeOf({ link, part }, state, params) {
-  const [elbow, tip] = placesOf(state, params);
-  const [from, to] = link === 0 ? [[0, 0], elbow] : [elbow, tip];
-  return from.map((x, i) => x + part * (to[i] - x));
-}
 
 /** The change of both velocities, rad/s, by a spring from a point to a target, both in m. */
 export function pull(point, target, state, params) {
@@ -54,12 +30,4 @@ export function pull(point, target, state, params) {
   const [impulse1, impulse2] = columns.map((column) => dt * dot(column, force));
   const determinant = a * d - b * b;
   return [(d * impulse1 - b * impulse2) / determinant, (a * impulse2 - b * impulse1) / determinant];
-}
-
-function massMatrix({ theta2 }, params) {
-  const { mass1, mass2, length1, centerOfMass1, centerOfMass2, inertia1, inertia2 } = params;
-  const second = mass2 * centerOfMass2 ** 2 + inertia2;
-  const both = second + mass2 * length1 * centerOfMass2 * Math.cos(theta2);
-  const first = mass1 * centerOfMass1 ** 2 + inertia1 + mass2 * length1 ** 2;
-  return [[first - second + 2 * both, both], [both, second]];
 }

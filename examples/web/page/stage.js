@@ -1,7 +1,7 @@
 // Draws the acrobot in the page's colours, the path of the tip to come, and the spring.
 
 import { FULL, newAcrobot } from "./game.js";
-import { placeOf, placesOf } from "./push.js";
+import { placeOf, placesOf } from "./places.js";
 import { color } from "./plot.js";
 
 const [picture, behind] = ["#picture", "#behind"].map((id) => document.querySelector(id));

@@ -29,7 +29,8 @@ const help = () => {
   };
 };
 const holds = () => /^[1-9]\d*\.\d s$/.test(document.querySelector("#return").textContent);
-const loads = (page) => page.waitForFunction(() => document.querySelector("#first") === null);
+const loads = (page) =>
+  page.waitForFunction(() => document.querySelector("#balance:enabled") !== null);
 /** The text of an element after the next picture, which the page writes it with. */
 const text = (page, id) => page.evaluate((id) => new Promise((done) => {
   const read = () => done(document.querySelector(id).textContent);

@@ -24,8 +24,8 @@ after(async () => {
 });
 
 /**
- * Opens the page and calls `play` once it has loaded. Asserts that its console has no errors or
- * warnings, and that it requests only its own files.
+ * Opens the page and calls `play` once it and the planner have loaded. Asserts that its console has
+ * no errors or warnings, and that it requests only its own files.
  */
 export async function open({ hash = "", prepare, starts = true, ...options }, play) {
   const permissions = ["clipboard-read", "clipboard-write"];
@@ -43,7 +43,7 @@ export async function open({ hash = "", prepare, starts = true, ...options }, pl
   if (prepare) await page.addInitScript(prepare);
   await page.goto(origin + hash);
   try {
-    if (starts) await page.waitForSelector("#first", { state: "detached" });
+    if (starts) await page.waitForSelector("#balance:enabled");
     await play(page);
     assert.deepEqual(wrong, []);
   } finally {

@@ -17,9 +17,10 @@ async function drag(page, part, time) {
 }
 
 onPage("the planner holds the acrobot, also after pulls", {}, async (page) => {
-  // The module for planning is not loaded before, and not in the page's thread.
-  const files = await page.evaluate(() => performance.getEntriesByType("resource"));
-  assert.deepEqual(files.filter(({ name }) => /control\.js|planning/.test(name)), []);
+  // The page begins without the module for planning, and does not plan in its thread.
+  const first = await page.$$eval("[rel=modulepreload]", (links) => links.map(({ href }) => href));
+  assert.deepEqual(["index", "control"].map((name) => first.join().includes(`/${name}.js`)),
+    [true, false]);
   await page.click("#balance");
   await says(page, "#thought", /^Plan of \d/);
   assert.match(page.workers()[0].url(), /planning\.js$/);
