@@ -169,3 +169,16 @@ where
 impl<T: Task> Given for T {
     const PARAMS: Params = <T as Task>::PARAMS;
 }
+
+/// The data of a task that has none, of which a snapshot has the name. TOML has no units, but
+/// structs without fields.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+pub(crate) struct NoData {}
+
+#[cfg(feature = "serde")]
+impl<T: Task> From<T> for NoData {
+    fn from(_: T) -> Self {
+        Self {}
+    }
+}

@@ -34,7 +34,7 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
         error.rsplit_once(" at line").unwrap().0.to_owned()
     };
     let ours = r#""acrobot", version 6, task "gymnasium", arithmetic "portable""#;
-    let header = r#""snapshot":{"of":"acrobot","version":6,"task":"gymnasium","arithmetic":"portable","data":null},"#;
+    let header = r#""snapshot":{"of":"acrobot","version":6,"task":"gymnasium","arithmetic":"portable","data":{}},"#;
     for (from, to) in
         [(r#""acrobot""#, r#""batch""#), ("6", "5"), ("gymnasium", "swingup"), ("portable", "host")]
     {

@@ -4,6 +4,8 @@ use core::num::NonZeroU32;
 
 use rand_core::Rng;
 
+#[cfg(feature = "serde")]
+use super::NoData;
 use super::balance::Balance;
 use super::gymnasium::Gymnasium;
 use super::reset_bounds::ResetBounds;
@@ -30,6 +32,8 @@ use crate::physics::{Params, State};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "NoData", into = "NoData"))]
 pub enum AnyTask {
     /// [`Gymnasium`]. Gymnasium's `Acrobot-v1`: swing the tip above a height within 500 steps of
     /// 0.2 s.
@@ -67,6 +71,13 @@ macro_rules! with_task {
 impl AnyTask {
     /// All tasks, in the order of their numbers in other languages.
     pub const ALL: [Self; 3] = [Self::Gymnasium, Self::Swingup, Self::Balance];
+}
+
+#[cfg(feature = "serde")]
+impl From<NoData> for AnyTask {
+    fn from(_: NoData) -> Self {
+        Self::DEFAULT
+    }
 }
 
 // Each item of the trait, so that none has a constant of another task.
@@ -126,20 +137,5 @@ impl Task for AnyTask {
         terminated: V::Mask,
     ) -> V::Single {
         with_task!(self, task => task.reward::<A, V>(pose, params, torque, terminated))
-    }
-}
-
-/// A snapshot has the name of the task in its header, and nothing more.
-#[cfg(feature = "serde")]
-impl serde::Serialize for AnyTask {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_unit()
-    }
-}
-
-#[cfg(feature = "serde")]
-impl<'de> serde::Deserialize<'de> for AnyTask {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        <()>::deserialize(deserializer).map(|()| Self::DEFAULT)
     }
 }

@@ -5,6 +5,8 @@ use core::num::NonZeroU32;
 
 use rand_core::Rng;
 
+#[cfg(feature = "serde")]
+use super::NoData;
 use super::gymnasium::Gymnasium;
 use super::reset_bounds::ResetBounds;
 use super::{Pose, Task};
@@ -26,7 +28,15 @@ use crate::physics::{Params, State};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "NoData", into = "NoData"))]
 pub struct Balance;
+
+#[cfg(feature = "serde")]
+impl From<NoData> for Balance {
+    fn from(_: NoData) -> Self {
+        Self::DEFAULT
+    }
+}
 
 impl Task for Balance {
     const NAME: &'static str = "balance";

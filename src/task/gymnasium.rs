@@ -3,6 +3,8 @@
 use core::f32::consts::PI;
 use core::num::NonZeroU32;
 
+#[cfg(feature = "serde")]
+use super::NoData;
 use super::{Pose, Task};
 use crate::arithmetic::{Arithmetic, Form, Numbers, Real};
 use crate::math::sealed::Sealed;
@@ -20,7 +22,15 @@ use crate::physics::Params;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "NoData", into = "NoData"))]
 pub struct Gymnasium;
+
+#[cfg(feature = "serde")]
+impl From<NoData> for Gymnasium {
+    fn from(_: NoData) -> Self {
+        Self::DEFAULT
+    }
+}
 
 impl Task for Gymnasium {
     const NAME: &'static str = "gymnasium";
@@ -82,7 +92,15 @@ fn highest_velocities(params: &Params<f32>) -> [f32; 2] {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "NoData", into = "NoData"))]
 pub struct GymnasiumV0;
+
+#[cfg(feature = "serde")]
+impl From<NoData> for GymnasiumV0 {
+    fn from(_: NoData) -> Self {
+        Self::DEFAULT
+    }
+}
 
 impl Task for GymnasiumV0 {
     const NAME: &'static str = "gymnasium_v0";

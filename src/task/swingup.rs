@@ -4,6 +4,8 @@ use core::num::NonZeroU32;
 
 use rand_core::Rng;
 
+#[cfg(feature = "serde")]
+use super::NoData;
 use super::reset_bounds::ResetBounds;
 use super::{Pose, Task};
 use crate::arithmetic::{Arithmetic, Numbers, Real};
@@ -28,7 +30,15 @@ use crate::physics::{Params, State};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "NoData", into = "NoData"))]
 pub struct Swingup;
+
+#[cfg(feature = "serde")]
+impl From<NoData> for Swingup {
+    fn from(_: NoData) -> Self {
+        Self::DEFAULT
+    }
+}
 
 impl Task for Swingup {
     const NAME: &'static str = "swingup";
