@@ -16,6 +16,7 @@ mod settings;
 #[cfg(feature = "serde")]
 mod snapshot;
 mod storage;
+mod task;
 #[cfg(feature = "alloc")]
 mod vec_batch;
 mod work;
@@ -125,19 +126,6 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
             storage,
         };
         batch.reset_with(seed.into().into());
-        Ok(batch)
-    }
-
-    /// As [`new`](Self::new), for this task with its parameters, and the errors of
-    /// [`set_all_params`](Self::set_all_params).
-    pub fn with_task(seed: impl Into<SeedSequence>, task: T, storage: S) -> Result<Self, Error> {
-        let seed = seed.into();
-        let mut batch = Self::new(seed.clone(), storage)?;
-        let settings = &mut batch.settings;
-        (settings.task, settings.bounds) = (task, task.reset_bounds());
-        settings.max_steps = task.max_steps();
-        batch.set_all_params(task.params().cast())?;
-        batch.reset_with_seed(seed);
         Ok(batch)
     }
 
@@ -316,17 +304,6 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         let slices = self.storage.slices();
         let both = slices.blocks.get(index / N).zip(slices.generators.get(index));
         both.ok_or(Error::NoSuchIndex { index, len: self.len() })
-    }
-
-    /// The task.
-    #[must_use]
-    pub fn task(&self) -> &T {
-        &self.settings.task
-    }
-
-    /// Sets the task of all acrobots for the next steps and resets.
-    pub fn set_task(&mut self, task: T) {
-        self.settings.task = task;
     }
 
     /// The SIMD instructions that a step uses.

@@ -31,9 +31,6 @@ pub struct Params<S = f64> {
     /// Length of link 1, m; above 0.
     pub length1: S,
     /// Length of link 2, m; above 0. Only the tip's height and drawings depend on it.
-    ///
-    /// Only [`positions`](super::Pendulum::positions) uses it: the equations of motion and
-    /// Gymnasium's goal do not.
     pub length2: S,
     /// Mass of link 1, kg; above 0.
     pub mass1: S,

@@ -1,4 +1,4 @@
-//! Memory for JavaScript, which has none of its own in the module.
+//! Memory in the module for what JavaScript passes to functions.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::ptr;

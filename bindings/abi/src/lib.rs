@@ -49,6 +49,9 @@ pub mod action_space;
 #[cfg(feature = "acrobots")]
 pub mod batch;
 
+#[cfg(feature = "acrobots")]
+pub mod members;
+
 #[cfg(all(feature = "acrobots", any(target_pointer_width = "64", target_family = "wasm")))]
 pub mod snapshot;
 

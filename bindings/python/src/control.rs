@@ -1,9 +1,6 @@
 //! What `acrobot_rs.control` computes: functions, each for many states at once, and plans.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
-use acrobot::control;
-use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
-use acrobot::control::identify::{Fit, Sample};
 use acrobot::control::model::{LinearModel, StepModel};
 use acrobot::control::plan::{self, Cost, Knot, Plan, Problem};
 use acrobot::control::regulator::{self, Feedback, Lqr, dlqr, lqr, tvlqr};
@@ -17,7 +14,7 @@ use pyo3::types::PyTuple;
 
 use crate::batch::parse;
 use crate::single::{Acrobot, One};
-use crate::{NAMES, Params, alone, held, invalid, load, named, place_of, rejected, save, wrong};
+use crate::{NAMES, Params, alone, held, invalid, named, rejected, wrong};
 
 /// Applies a function to each row of inputs. Returns the results of all rows.
 #[pyfunction]
@@ -324,92 +321,4 @@ impl SwingUp {
     fn torque(slf: &Bound<'_, Self>, state: [f32; 4]) -> PyResult<f32> {
         alone(slf)?.swing_up.torque(state.into()).map_err(rejected)
     }
-}
-
-/// Estimates a state and parameters. Those with a standard deviation of 0 are known.
-#[pyclass(module = "acrobot_rs._native")]
-pub struct Estimator(ParameterEstimator<Damped<Portable>>);
-
-#[pymethods]
-impl Estimator {
-    #[new]
-    fn new(
-        acrobot: &Bound<'_, Acrobot>,
-        angle_std: f64,
-        torque_std: f64,
-        parameter_std: [f64; 10],
-    ) -> PyResult<Self> {
-        let [mass1, mass2, length1, inertia1, inertia2, ..] = parameter_std;
-        let [.., damping1, damping2, coulomb1, coulomb2, rotor] = parameter_std;
-        let links =
-            ParameterStd { mass1, mass2, length1, inertia1, inertia2, ..Default::default() };
-        let std = ParameterStd { damping1, damping2, coulomb1, coulomb2, rotor, ..links };
-        let noise = Noise { angle_std, torque_std };
-        let estimator = ParameterEstimator::new(alone(acrobot)?.acrobot.params(), std, noise);
-        estimator.map(Self).map_err(|error| match place_of(error) {
-            Some(place) => named(error, format_args!("parameter_std['{}']", NAMES[place])),
-            None => rejected(error),
-        })
-    }
-
-    fn correct(slf: &Bound<'_, Self>, angles: [f64; 2]) -> PyResult<[f64; 4]> {
-        let mut this = alone(slf)?;
-        this.0.correct(angles).map_err(rejected)?;
-        Ok(this.0.state().into())
-    }
-
-    fn predict(slf: &Bound<'_, Self>, torque: f64) -> PyResult<()> {
-        alone(slf)?.0.predict(torque).map_err(rejected)
-    }
-
-    fn state_std(slf: &Bound<'_, Self>) -> PyResult<Option<[f64; 4]>> {
-        Ok(alone(slf)?.0.state_std())
-    }
-
-    fn params(slf: &Bound<'_, Self>) -> PyResult<Named<f64>> {
-        Ok(named_numbers(alone(slf)?.0.params()))
-    }
-
-    /// Makes any estimator, which `__setstate__` then replaces by a copy of this one.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
-        let any = (Acrobot::new(false, "gymnasium")?, 1.0, 1.0, [0.0; 10]);
-        Ok((slf.get_type(), any, save(slf.py(), &alone(slf)?.0)?))
-    }
-
-    fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
-        alone(slf)?.0 = load(bytes)?;
-        Ok(())
-    }
-}
-
-/// Angles and torques, a row for each sample of each recording, to parameters; to the numbers that
-/// they follow from, with standard errors and parts of the weakest combination; and to the rank
-/// deficiency.
-#[pyfunction]
-pub fn identify(
-    acrobot: &Bound<'_, Acrobot>,
-    recordings: Vec<Vec<[f64; 4]>>,
-) -> PyResult<(Named<f64>, Named<[f64; 3]>, usize)> {
-    let sample = |[angle1, angle2, torque1, torque2]: [f64; 4]| Sample {
-        angles: [angle1, angle2],
-        torques: [torque1, torque2],
-    };
-    let recordings: Vec<Vec<_>> =
-        recordings.into_iter().map(|rows| rows.into_iter().map(sample).collect()).collect();
-    let recordings: Vec<&[_]> = recordings.iter().map(Vec::as_slice).collect();
-    let (params, fit) = control::identify::identify(&recordings, alone(acrobot)?.acrobot.params())
-        .map_err(rejected)?;
-    let Fit { values, std_errors, weakest, rank_deficiency } = fit;
-    let numbers = Fit::NAMES.into_iter().enumerate();
-    let numbers = numbers.map(|(i, name)| (name, [values[i], std_errors[i], weakest[i]])).collect();
-    Ok((named_numbers(&params), numbers, rank_deficiency))
-}
-
-/// Names and what they stand for.
-type Named<T> = Vec<(&'static str, T)>;
-
-/// The parameters that are one number, by Python's names.
-fn named_numbers(params: &Params) -> Named<f64> {
-    let numbers = NAMES.into_iter().zip(params.numbers()).map(|(name, (_, number))| (name, number));
-    numbers.filter(|(name, _)| *name != "AVAIL_TORQUE").collect()
 }

@@ -3,6 +3,7 @@
 mod batch;
 mod control;
 mod engine;
+mod estimate;
 mod pool;
 mod single;
 
@@ -41,7 +42,9 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::control::{Estimator, Planner, SwingUp, compute, identify, plan_torque};
+    use super::control::{Planner, SwingUp, compute, plan_torque};
+    #[pymodule_export]
+    use super::estimate::{Estimator, identify};
     #[pymodule_export]
     use super::single::Acrobot;
     use super::*;
