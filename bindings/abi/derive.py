@@ -178,7 +178,10 @@ holders = [(name.lower().strip("_") or "acrobot", size) for name, size in holder
 lines += ["", "/** Bytes. */", *entries("export const SIZES =", sorted(holders), "  ", "};")]
 lines += ["", "/** First word of 32 bits, and words. Two bools in one are `flags`. */"]
 lines += ["export const STRUCTS = {"]
+scripts = "".join(path.read_text() for path in (ROOT / NPM).glob("*.js") if path.stem != "layout")
 for name, fields in structs.items():
+    if name not in scripts:
+        continue
     places = {}
     for field, (start, size) in fields.items():
         place = [start // 4, -(-size // 4)]

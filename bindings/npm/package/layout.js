@@ -22,13 +22,6 @@ export const STRUCTS = {
   acrobot_error_t: {
     value: [0, 2], kind: [2, 1], name: [3, 6], unit: [9, 4], rule: [13, 20],
   },
-  acrobot_observation_t: {
-    cosTheta1: [0, 1], sinTheta1: [1, 1], cosTheta2: [2, 1], sinTheta2: [3, 1], dtheta1: [4, 1],
-    dtheta2: [5, 1],
-  },
-  acrobot_reset_options_t: {
-    seed: [0, 1], seedWords: [1, 1], bounds: [2, 1],
-  },
   acrobot_step_t: {
     observation: [0, 6], reward: [6, 1], flags: [7, 1],
   },
@@ -45,12 +38,6 @@ export const STRUCTS = {
   acrobot_draw_t: {
     kind: [0, 1], low: [1, 1], high: [2, 1], mean: [3, 1], std: [4, 1],
   },
-  acrobot_draws_t: {
-    length1: [0, 5], length2: [5, 5], mass1: [10, 5], mass2: [15, 5], centerOfMass1: [20, 5],
-    centerOfMass2: [25, 5], inertia1: [30, 5], inertia2: [35, 5], gravity: [40, 5], dt: [45, 5],
-    maxVelocity1: [50, 5], maxVelocity2: [55, 5], torques: [60, 15], torqueNoise: [75, 5],
-    damping1: [80, 5], damping2: [85, 5], coulomb1: [90, 5], coulomb2: [95, 5], rotor: [100, 5],
-  },
   acrobot_rates_t: {
     dtheta1: [0, 1], dtheta2: [1, 1], ddtheta1: [2, 1], ddtheta2: [3, 1],
   },
@@ -58,9 +45,6 @@ export const STRUCTS = {
     torques: [0, 2], reaction: [2, 2], elbow: [4, 2],
   },
   acrobot_linear_model_t: {
-    a: [0, 16], b: [16, 4],
-  },
-  acrobot_step_model_t: {
     a: [0, 16], b: [16, 4],
   },
   acrobot_weights_t: {
@@ -79,9 +63,6 @@ export const STRUCTS = {
   acrobot_knot_t: {
     state: [0, 4], torque: [4, 1], gain: [5, 4], workspace: [9, 2],
   },
-  acrobot_region_t: {
-    gain: [0, 4], factor: [4, 16],
-  },
   acrobot_feedback_t: {
     target: [0, 4], torque: [4, 1], moving: [5, 20], resting: [25, 20], reach: [45, 1],
   },
@@ -91,12 +72,6 @@ export const STRUCTS = {
   acrobot_parameter_std_t: {
     mass1: [0, 1], mass2: [1, 1], length1: [2, 1], inertia1: [3, 1], inertia2: [4, 1],
     damping1: [5, 1], damping2: [6, 1], coulomb1: [7, 1], coulomb2: [8, 1], rotor: [9, 1],
-  },
-  acrobot_sample_t: {
-    angles: [0, 4], torques: [4, 4],
-  },
-  acrobot_fit_t: {
-    values: [0, 20], stdErrors: [20, 20], weakest: [40, 20], rankDeficiency: [60, 1],
   },
   acrobot_settings_t: {
     params: [0, 22], limit: [22, 1], counts: [23, 2], ticks: [25, 1],
