@@ -147,8 +147,8 @@ pub unsafe extern "C" fn acrobot_batch_load(
     batch: *mut *mut acrobot_batch_t,
 ) -> acrobot_status_t {
     status(|| {
-        let content = open(bytes, length)?;
         check_apart(&[Span::new(memory.cast::<u8>(), size), Span::new(bytes, length)])?;
+        let content = open(bytes, length)?;
         place(memory, size, saved(content)?, batch, |memory| {
             let mut reader = Deserializer::from_bytes(content);
             let batch = Batch::from_snapshot(memory, &mut reader).map_err(other)?;

@@ -1,384 +1,259 @@
-// Misuse is reported, and a call that is rejected changes nothing.
+// Misuse is reported, and a call that is rejected changes nothing. misuse.awk finds the functions
+// and their arguments in the header; where this file lacks an argument, the compiler names it.
 
 #include "check.h"
 
 #define COUNT 3
-#define WITH(mass1) \
-    {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 9, 9, {-1, 0, 1}, 0, 0, 0, 0, 0, 0, 0}
+#define SIZE ACROBOT_BATCH_OWN_SIZE(COUNT)
+#define SLOTS 9
 
-typedef acrobot_observation_t row_t;
-typedef row_t rows_t[COUNT];
-typedef float rewards_t[COUNT], matrix2_t[2][2], matrix4_t[4][4];
+typedef ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) uint8_t memory_t[SIZE];
 
-static const acrobot_params_t GOOD = WITH(1), MASSLESS = WITH(0);
-static const acrobot_state_t REST = {0, 0, 0, 0}, UP = {3.14159f, 0, 0, 0}, FLUNG = {INF, 0, 0, 0};
-static const acrobot_weights_t ONES = {{{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}}, 1};
-static const acrobot_noise_t QUIET = {.001f, .01f};
-static const acrobot_parameter_std_t DOUBT = {.1f, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-static const acrobot_settings_t RIGHT = {WITH(1), 6, {4096, 1024}, 5};
-static const double LIMITS[] = {-1, 1, -1};
-static const acrobot_reset_options_t WIDE = {NULL, 0, LIMITS}, SWAPPED = {NULL, 0, LIMITS + 1};
-static const uint64_t SEEDED[COUNT] = {7, 8, 9};
-static const uint8_t ACTED[COUNT] = {0, 1, 2};
-static const bool MASKED[COUNT] = {true, false, true};
-static const acrobot_sample_t STILL[COUNT] = {{{0, 0}, {0, 0}}};
-static acrobot_knot_t rest[COUNT], improved[COUNT];
+// Arguments that are accepted.
+static acrobot_state_t a_state[] = {{3.1415927f, 0, 0, 0}};
+static acrobot_weights_t a_weights[] = {{{{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}}, 1}};
+static acrobot_noise_t a_noise[] = {{.001f, .01f}};
+static acrobot_parameter_std_t a_parameter_std[] = {{.1f, 0, 0, 0, 0, 0, 0, 0, 0, 0}};
+static acrobot_sample_t a_sample[COUNT];
+static acrobot_knot_t a_knot[COUNT];
+static acrobot_draws_t a_draws[1];
+static uint32_t a_seed[] = {7};
+static uint64_t a_seeds[COUNT];
+static uint8_t a_actions[COUNT];
+static bool a_mask[COUNT];
+static float a_torques[COUNT], a_float[] = {.001f};
+static double a_bounds[] = {-1, 1}, a_double[] = {1};
+static int a_int[] = {1};
 // By `main`.
-static acrobot_draws_t reversed;
-static acrobot_controller_t a_controller;
-static acrobot_linear_model_t linear_model;
-static acrobot_step_model_t step_model;
-static acrobot_problem_t a_problem;
-static acrobot_fit_t fit_of_nothing;
-static acrobot_feedback_t feedback;
+static acrobot_params_t a_params[1];
+static acrobot_linear_model_t a_linear_model[1];
+static acrobot_step_model_t a_step_model[COUNT];
+static acrobot_problem_t a_problem[1];
+static acrobot_feedback_t a_feedback[1];
+static acrobot_fit_t a_fit[1];
+static acrobot_settings_t a_settings[1];
+static acrobot_controller_t a_controller[1];
+// The most that an argument has, except the memory of a batch.
+#ifdef ACROBOT_HAS_SNAPSHOTS
+#define WIDTH SIZE
+static uint8_t a_bytes[SIZE];
+static size_t saved;
+#else
+#define WIDTH 512
+#endif
 
-// Each argument that is no result: an array must not overlap the holder.
-#define INPUTS \
-    INPUT(acrobot_params_t, PARAMS, &GOOD, false) \
-    INPUT(acrobot_params_t, NO_MASS, &MASSLESS, false) \
-    INPUT(acrobot_state_t, STATE, &UP, false) \
-    INPUT(acrobot_state_t, FAR, &FLUNG, false) \
-    INPUT(acrobot_draws_t, REVERSED, &reversed, false) \
-    INPUT(acrobot_weights_t, WEIGHTS, &ONES, false) \
-    INPUT(acrobot_linear_model_t, MODEL, &linear_model, false) \
-    INPUT(acrobot_step_model_t, STEPS, &step_model, true) \
-    INPUT(acrobot_problem_t, PROBLEM, &a_problem, false) \
-    INPUT(acrobot_knot_t, KNOTS, rest, true) \
-    INPUT(acrobot_knot_t, NEXT, improved, true) \
-    INPUT(acrobot_feedback_t, AFTER, &feedback, false) \
-    INPUT(acrobot_noise_t, NOISE, &QUIET, false) \
-    INPUT(acrobot_parameter_std_t, STD, &DOUBT, false) \
-    INPUT(acrobot_fit_t, FIT, &fit_of_nothing, false) \
-    INPUT(acrobot_sample_t, SAMPLES, STILL, true) \
-    INPUT(acrobot_settings_t, SETTINGS, &RIGHT, false) \
-    INPUT(acrobot_controller_t, CONTROLLED, &a_controller, true) \
-    INPUT(uint32_t, WORDS, SEEDED, true) \
-    INPUT(uint64_t, ALL_SEEDS, SEEDED, true) \
-    INPUT(uint8_t, ACTIONS, ACTED, true) \
-    INPUT(bool, MASK, MASKED, true)
-
-// What holds the value that a function uses.
-#define HOLDS \
-    HOLDER(ALONE, acrobot_t, acrobot, ACROBOT_SIZE) \
-    HOLDER(ACTION_SPACE, acrobot_action_space_t, action_space, ACROBOT_ACTION_SPACE_SIZE) \
-    HOLDER(BATCH, acrobot_batch_t, batch, ACROBOT_BATCH_OWN_SIZE(COUNT)) \
-    HOLDER(PLANNER, acrobot_planner_t, planner, ACROBOT_PLANNER_SIZE) \
-    HOLDER(SWING_UP, acrobot_swing_up_t, swing_up, ACROBOT_SWING_UP_SIZE) \
-    HOLDER(ESTIMATOR, acrobot_estimator_t, estimator, ACROBOT_ESTIMATOR_SIZE) \
-    HOLDER(BOTH, acrobot_parameter_estimator_t, parameters, ACROBOT_PARAMETER_ESTIMATOR_SIZE) \
-    HOLDER(REGRESSION, acrobot_regression_t, regression, ACROBOT_REGRESSION_SIZE) \
-    HOLDER(CONTROLLER, acrobot_controller_t, controller, ACROBOT_CONTROLLER_SIZE) \
-    HOLDER(REPLANNER, acrobot_replanner_t, replanner, ACROBOT_REPLANNER_SIZE)
-#define HOLDER(holder, type, name, size) holder,
-enum { HOLDS HOLDERS, NOTHING = HOLDERS };
-#undef HOLDER
-#define HOLDER(holder, type, name, size) size,
-static const size_t SIZES[] = {HOLDS 0};
-#undef HOLDER
-enum { NEEDED, OPTIONAL, NONE };
-enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
-
-// Every pointer through which a function writes a result or an error, whether it may be null, and
-// the status. NONE: the function has no such pointer.
-#define RESULT(holder, type, ...) CALL(holder, type, NEEDED, OK, __VA_ARGS__)
-#define ERROR(holder, ...) CALL(holder, acrobot_error_t, OPTIONAL, RANGE, __VA_ARGS__)
-#define RESET(...) CALL(ALONE, row_t, OPTIONAL, OK, __VA_ARGS__)
-#define BEGIN(holder, ...) CALL(holder, void *, NONE, OK, __VA_ARGS__)
-#define COMPUTE(type, ...) CALL(NOTHING, type, NEEDED, OK, __VA_ARGS__)
-#define FAIL(type, ...) CALL(NOTHING, type, NEEDED, RANGE, __VA_ARGS__)
-#define INIT(holder, ...) CALL(holder, acrobot_error_t, OPTIONAL, OK, __VA_ARGS__)
-// The first ones initialize the holders, in the same order.
-#define CALLS \
-    BEGIN(ALONE, acrobot_init(acrobot, 42)) \
-    BEGIN(ACTION_SPACE, acrobot_action_space_init(action_space, 42)) \
-    RESULT(BATCH, acrobot_batch_t *, acrobot_batch_init(batch, SIZE, COUNT, 0, true, 42, out)) \
-    INIT(PLANNER, acrobot_planner_init(planner, PROBLEM, out)) \
-    INIT(SWING_UP, acrobot_swing_up_init(swing_up, PARAMS, 1, out)) \
-    INIT(ESTIMATOR, acrobot_estimator_init(estimator, PARAMS, NOISE, out)) \
-    INIT(BOTH, acrobot_parameter_estimator_init(parameters, PARAMS, STD, NOISE, out)) \
-    BEGIN(REGRESSION, acrobot_regression_init(regression)) \
-    INIT(CONTROLLER, acrobot_controller_init(controller, SETTINGS, out)) \
-    INIT(REPLANNER, acrobot_replanner_init(replanner, SETTINGS, out)) \
-    INIT(ALONE, acrobot_init_task(acrobot, 1, 42, out)) \
-    BEGIN(ACTION_SPACE, acrobot_action_space_init_with(action_space, WORDS, 1)) \
-    RESET(acrobot_reset(acrobot, out)) \
-    RESET(acrobot_reset_with_seed(acrobot, 7, out)) \
-    RESET(acrobot_reset_with(acrobot, &WIDE, out, NULL)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, OK, acrobot_reset_with(acrobot, NULL, NULL, out)) \
-    ERROR(ALONE, acrobot_reset_with(acrobot, &SWAPPED, NULL, out)) \
-    RESULT(ALONE, acrobot_step_t, acrobot_step(acrobot, 2, out)) \
-    RESULT(ALONE, acrobot_step_t, acrobot_step_torque(acrobot, 1, out, NULL)) \
-    ERROR(ALONE, acrobot_step_torque(acrobot, INF, &step, out)) \
-    RESULT(ALONE, row_t, acrobot_observe(acrobot, out)) \
-    RESULT(ALONE, uint32_t, acrobot_elapsed_steps(acrobot, out)) \
-    RESULT(ALONE, uint32_t, acrobot_max_steps(acrobot, out)) \
-    RESULT(ALONE, int, acrobot_task(acrobot, out)) \
-    ERROR(ALONE, acrobot_set_max_steps(acrobot, 0, out)) \
-    RESULT(ALONE, acrobot_state_t, acrobot_state(acrobot, out)) \
-    ERROR(ALONE, acrobot_set_state(acrobot, FAR, out)) \
-    RESULT(ALONE, acrobot_params_t, acrobot_params(acrobot, out)) \
-    ERROR(ALONE, acrobot_set_params(acrobot, NO_MASS, out)) \
-    ERROR(ALONE, acrobot_draw_params(acrobot, REVERSED, out)) \
-    RESULT(ALONE, float, acrobot_energy(acrobot, out)) \
-    RESULT(ALONE, float, acrobot_tip_height(acrobot, out)) \
-    RESULT(ACTION_SPACE, uint8_t, acrobot_action_space_sample(action_space, out)) \
-    RESULT(ACTION_SPACE, uint8_t, acrobot_action_space_sample_each(action_space, out, 1)) \
-    BEGIN(BATCH, acrobot_batch_reset(batch)) \
-    BEGIN(BATCH, acrobot_batch_reset_with(batch, &WIDE, NULL)) \
-    ERROR(BATCH, acrobot_batch_reset_with(batch, &SWAPPED, out)) \
-    BEGIN(BATCH, acrobot_batch_reset_masked(batch, MASK, COUNT, NULL, NULL)) \
-    ERROR(BATCH, acrobot_batch_reset_masked(batch, MASK, COUNT, &SWAPPED, out)) \
-    BEGIN(BATCH, acrobot_batch_reset_with_seeds(batch, ALL_SEEDS, COUNT)) \
-    RESULT(BATCH, rewards_t, acrobot_batch_step(batch, ACTIONS, &results, COUNT)) \
-    RESULT(BATCH, rows_t, acrobot_batch_observe(batch, (row_t *)out, COUNT)) \
-    RESULT(BATCH, acrobot_batch_settings_t, acrobot_batch_settings(batch, out)) \
-    RESULT(BATCH, uint32_t, acrobot_batch_elapsed_steps(batch, 0, out)) \
-    RESULT(BATCH, bool, acrobot_batch_is_done(batch, 0, out)) \
-    ERROR(BATCH, acrobot_batch_set_draws(batch, REVERSED, out)) \
-    ERROR(BATCH, acrobot_batch_set_autoreset(batch, 3, out)) \
-    ERROR(BATCH, acrobot_batch_set_max_steps(batch, 0, out)) \
-    RESULT(BATCH, acrobot_state_t, acrobot_batch_state(batch, 0, out)) \
-    ERROR(BATCH, acrobot_batch_set_state(batch, 0, FAR, out)) \
-    RESULT(BATCH, acrobot_params_t, acrobot_batch_params(batch, 0, out)) \
-    ERROR(BATCH, acrobot_batch_set_all_params(batch, NO_MASS, out)) \
-    ERROR(BATCH, acrobot_batch_set_params(batch, 0, NO_MASS, out)) \
-    BEGIN(PLANNER, acrobot_planner_with_velocity_clamp(planner)) \
-    RESULT(PLANNER, size_t, acrobot_planner_plan(planner, STATE, 1, 4, KNOTS, COUNT, out, NULL)) \
-    ERROR(PLANNER, acrobot_planner_plan(planner, FAR, 1, 4, KNOTS, COUNT, &length, out)) \
-    RESULT(PLANNER, float, acrobot_planner_improve(planner, STATE, 1, KNOTS, NEXT, 2, out, NULL)) \
-    ERROR(PLANNER, acrobot_planner_improve(planner, FAR, 1, KNOTS, NEXT, 3, &torque, out)) \
-    RESULT(PLANNER, acrobot_feedback_t, acrobot_planner_feedback(planner, out)) \
-    RESULT(PLANNER, bool, acrobot_planner_holds_from(planner, STATE, out, NULL)) \
-    ERROR(PLANNER, acrobot_planner_holds_from(planner, FAR, &holds, out)) \
-    RESULT(SWING_UP, float, acrobot_swing_up_torque(swing_up, STATE, out, NULL)) \
-    ERROR(SWING_UP, acrobot_swing_up_torque(swing_up, FAR, &torque, out)) \
-    ERROR(ESTIMATOR, acrobot_estimator_correct(estimator, INF, 0, out)) \
-    ERROR(ESTIMATOR, acrobot_estimator_predict(estimator, INF, out)) \
-    RESULT(ESTIMATOR, acrobot_state_t, acrobot_estimator_state(estimator, out)) \
-    RESULT(ESTIMATOR, acrobot_state_t, acrobot_estimator_state_std(estimator, out)) \
-    ERROR(BOTH, acrobot_parameter_estimator_correct(parameters, 0, INF, out)) \
-    ERROR(BOTH, acrobot_parameter_estimator_predict(parameters, INF, out)) \
-    RESULT(BOTH, acrobot_state_t, acrobot_parameter_estimator_state(parameters, out)) \
-    RESULT(BOTH, acrobot_state_t, acrobot_parameter_estimator_state_std(parameters, out)) \
-    RESULT(BOTH, acrobot_params_t, acrobot_parameter_estimator_params(parameters, out)) \
-    ERROR(REGRESSION, acrobot_regression_add(regression, SAMPLES, COUNT, 0, 9.8, 1, 1, out)) \
-    RESULT(REGRESSION, acrobot_fit_t, acrobot_regression_fit(regression, out)) \
-    RESULT(CONTROLLER, float, acrobot_controller_tick(controller, 1, 2, out, NULL)) \
-    RESULT(CONTROLLER, acrobot_state_t, acrobot_controller_state(controller, out)) \
-    RESULT(CONTROLLER, acrobot_params_t, acrobot_controller_params(controller, out)) \
-    BEGIN(REPLANNER, acrobot_replanner_exchange(replanner, CONTROLLED)) \
-    BEGIN(REPLANNER, acrobot_replanner_work(replanner)) \
-    COMPUTE(acrobot_params_t, acrobot_task_params(0, out, &error)) \
-    COMPUTE(acrobot_state_t, acrobot_deviation_from(STATE, STATE, out, &error)) \
-    COMPUTE(acrobot_rates_t, acrobot_derivative(PARAMS, STATE, 1, out, &error)) \
-    COMPUTE(matrix2_t, acrobot_mass_matrix(PARAMS, STATE, out, &error)) \
-    COMPUTE(acrobot_forces_t, acrobot_inverse_dynamics(PARAMS, STATE, 1, 2, out, &error)) \
-    COMPUTE(acrobot_linear_model_t, acrobot_linearize(PARAMS, STATE, 1, out, &error)) \
-    COMPUTE(acrobot_step_model_t, acrobot_linearize_step(PARAMS, STATE, 1, out, &error)) \
-    COMPUTE(acrobot_lqr_t, acrobot_regulator(PARAMS, STATE, 0, WEIGHTS, out, &error)) \
-    COMPUTE(acrobot_lqr_t, acrobot_lqr(MODEL, WEIGHTS, out, &error)) \
-    COMPUTE(acrobot_lqr_t, acrobot_dlqr(STEPS, WEIGHTS, out, &error)) \
-    COMPUTE(matrix4_t, acrobot_tvlqr(STEPS, WEIGHTS, out, &gain, 1, &error)) \
-    COMPUTE(acrobot_problem_t, acrobot_problem_init(out, PARAMS, 1, 0, &error)) \
-    COMPUTE(float, acrobot_plan_torque(KNOTS, 1, AFTER, 0, STATE, out, &error)) \
-    COMPUTE(double, acrobot_prediction_error(PARAMS, SAMPLES, 1, 1, out, &error)) \
-    FAIL(acrobot_params_t, acrobot_fit_params(FIT, PARAMS, out, &error)) \
-    FAIL(acrobot_params_t, acrobot_identify(SAMPLES, 1, PARAMS, out, &error))
-
-struct call {
-    int holder, optional, status;
-    size_t size;
-    const char *text;
-};
-
-static const struct call TABLE[] = {
-#define CALL(holder, type, optional, status, ...) \
-    {holder, optional, status, sizeof(type), #__VA_ARGS__},
-    CALLS
-#undef CALL
-};
-enum { ROWS = sizeof TABLE / sizeof TABLE[0] };
-
-static const struct {
+// MADE, HOLDER: what an `_init` makes, and then is used. STRUCT: of the pointers that follow.
+enum role { NONE, MADE, HOLDER, STRUCT, INPUT, NUMBER, OUTPUT };
+struct argument {
     const char *name;
-    size_t size;
-    bool is_array;
-} NAMES[] = {
-#define INPUT(type, name, value, is_array) {#name, sizeof(type), is_array},
-    INPUTS
-#undef INPUT
+    enum role role;
+    size_t size, align;
+    bool is_apart, is_optional;
+    void *good;
 };
-enum { INPUT_COUNT = sizeof NAMES / sizeof NAMES[0] };
+struct function {
+    const char *name;
+    acrobot_status_t (*call)(void **pointers);
+    int init; // in TABLE, or below 0
+    struct argument arguments[SLOTS];
+};
+#define ARGUMENT(role, name, type, count, is_apart, is_optional, good) \
+    {#name, role, sizeof(type) * (count), __alignof__(type), is_apart, is_optional, good}
+#include "misuse.h"
+enum { FUNCTIONS = sizeof TABLE / sizeof TABLE[0] };
 
 #define MARGIN 192
-#define SIZE ACROBOT_BATCH_OWN_SIZE(COUNT)
-// The most that a holder has.
-#define MOST ACROBOT_CONTROLLER_SIZE
+#define MOST sizeof(acrobot_controller_t)
 ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t arena[MARGIN + MOST + MARGIN];
-ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t other[MOST], spare[2 * MARGIN];
-static const uint8_t ZERO[2 * MARGIN] = {0};
-static uint8_t saved[MOST];
+ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t other[MOST], ones[WIDTH];
+// The alignment of the largest is enough.
+ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t outputs[SLOTS][(WIDTH + 63) / 64 * 64];
+static uint8_t before[MOST];
+static const uint8_t ZEROS[MOST] = {0};
 static uint8_t *const held = arena + MARGIN;
+static void *pointers[SLOTS];
+static const struct function *tested;
+static size_t size_of_held;
 
-// Which input is wrong, and how.
-enum { BY_NULL, BY_A_BYTE, BY_OVERLAP };
-static int wrong = -1, how;
-
-static void *input(int index, const void *pointer)
+// Good arguments.
+static void prepare(int function)
 {
-    if (index != wrong) {
-        return (void *)pointer;
+    tested = &TABLE[function];
+    __builtin_memset(outputs, 0, sizeof outputs);
+    for (int i = 0; i < SLOTS; i++) {
+        const struct argument *argument = &tested->arguments[i];
+        switch (argument->role) {
+        case MADE:
+        case HOLDER: pointers[i] = held; break;
+        case STRUCT: pointers[i] = &pointers[i + 1]; break;
+        case OUTPUT: pointers[i] = outputs[i]; break;
+        default: pointers[i] = argument->good;
+        }
     }
-    return how == BY_NULL ? NULL : how == BY_OVERLAP ? held : (uint8_t *)pointer + 1;
 }
 
-static acrobot_status_t call(int index, void *holder, void *pointer)
+// Initializes what a function uses.
+static void hold(int init)
 {
-#define HOLDER(holder_, type, name, size) type *name = (type *)holder;
-    HOLDS
-#undef HOLDER
-    int next = 0;
-#define INPUT(type, name, value, is_array) type *name = (type *)input(next++, value);
-    INPUTS
-#undef INPUT
-    acrobot_step_t step;
-    acrobot_state_t gain;
-    float torque;
-    size_t length;
-    bool holds, terminated[COUNT], truncated[COUNT];
-    const acrobot_batch_results_t results = {(float *)pointer, terminated, truncated, NULL, NULL};
-#define CALL(holder, type, optional, status, ...) \
-    if (index-- == 0) { \
-        type *out = (type *)pointer; \
-        (void)out; \
-        return __VA_ARGS__; \
+    size_of_held = 0;
+    if (init >= 0) {
+        prepare(init);
+        size_of_held = tested->arguments[0].size;
+        CHECK(tested->call(pointers) == ACROBOT_OK);
     }
-    CALLS
-#undef CALL
-    return ACROBOT_OK;
+    __builtin_memcpy(before, held, MOST);
 }
 
-static void expect(int index, void *holder, void *out, int status)
+// The status with another argument.
+static void expect(int slot, void *pointer, int status)
 {
-    if ((int)call(index, holder, out) != status) {
-        print(TABLE[index].text);
-        print(" must return ");
-        print(acrobot_status_text(status));
-        print(wrong < 0 ? "" : " for ");
-        print(wrong < 0 ? "" : NAMES[wrong].name);
-        print("\n");
+    void *const good = pointers[slot];
+    pointers[slot] = pointer;
+    const int found = tested->call(pointers);
+    pointers[slot] = good;
+    if (found != status) {
+        const char *parts[] = {
+            tested->name, " with another ", tested->arguments[slot].name, " must return ",
+            acrobot_status_text(status), ", not ", acrobot_status_text(found), "\n"};
+        for (int i = 0; i < 8; i++) {
+            print(parts[i]);
+        }
         failures++;
     }
+    CHECK(found == ACROBOT_OK || same(held, before, size_of_held));
+    __builtin_memcpy(held, before, size_of_held);
 }
 
-static void *hold(int holder)
-{
-    if (holder != NOTHING) {
-        expect(holder, held, spare, ACROBOT_OK);
-    }
-    __builtin_memcpy(saved, held, MOST);
-    return held;
-}
+static const struct {
+    const char *function, *argument;
+    int status;
+} STATUSES[] = {
+    // Ones: the recording is too short to be read, and the step is one of the plan.
+    {"acrobot_prediction_error", "samples", ACROBOT_OK},
+    {"acrobot_plan_torque", "after", ACROBOT_OK},
+    {"", "action", ACROBOT_ERROR_UNKNOWN_ACTION},
+    {"", "bytes", ACROBOT_ERROR_DAMAGED_SNAPSHOT},
+    {"", "controller", ACROBOT_ERROR_NOT_INITIALIZED},
+    {"", "seed", ACROBOT_OK},
+    // Good arguments: a recording at rest determines nothing, and the bytes are those of a batch.
+    {"acrobot_fit_params", "", ACROBOT_ERROR_OUT_OF_RANGE},
+    {"acrobot_identify", "", ACROBOT_ERROR_OUT_OF_RANGE},
+    {"acrobot_load", "", ACROBOT_ERROR_OTHER_SNAPSHOT},
+};
 
-static bool contains(const char *text, const char *word)
+// The status if this argument is ones, or "" for good arguments.
+static int status_of(const char *argument, int otherwise)
 {
-    while (*text != 0 && after(text, word) == NULL) {
-        text++;
-    }
-    return *text != 0;
-}
-
-static void holders(void)
-{
-    for (int i = 0; i < ROWS; i++) {
-        const int holder = TABLE[i].holder;
-        if (holder != NOTHING) {
-            expect(i, NULL, spare, ACROBOT_ERROR_NULL);
-            expect(i, held + 1, spare, ACROBOT_ERROR_MISALIGNED);
-        }
-        if (holder != NOTHING && !contains(TABLE[i].text, "_init")) {
-            // `other` contains zeros.
-            expect(i, other, spare, ACROBOT_ERROR_NOT_INITIALIZED);
-            expect(i, hold((holder + 1) % HOLDERS), spare, ACROBOT_ERROR_NOT_INITIALIZED);
-        }
-        expect(i, hold(holder), spare, TABLE[i].status);
-    }
-    __builtin_memcpy(other, hold(BATCH), sizeof other);
-    for (int i = HOLDERS; i < ROWS; i++) {
-        if (TABLE[i].holder == BATCH) {
-            expect(i, other, spare, ACROBOT_ERROR_MOVED);
+    for (size_t i = 0; i < sizeof STATUSES / sizeof STATUSES[0]; i++) {
+        if (after(tested->name, STATUSES[i].function) != NULL &&
+            after(argument, STATUSES[i].argument) != NULL) {
+            return STATUSES[i].status;
         }
     }
-    CHECK(same(other, saved, sizeof other));
+    return otherwise;
 }
 
-static void inputs(void)
+// Zeros, what the `_init` of another type made, and a copy.
+static void copies(int function, int status)
 {
-    for (int i = 0; i < ROWS; i++) {
-        const struct call *row = &TABLE[i];
-        hold(row->holder);
-        __builtin_memset(spare, 0, sizeof spare);
-        for (wrong = 0; wrong < INPUT_COUNT; wrong++) {
-            if (!contains(row->text, NAMES[wrong].name)) {
-                continue;
-            }
-            how = BY_NULL;
-            expect(i, held, spare, ACROBOT_ERROR_NULL);
-            how = BY_A_BYTE;
-            if (NAMES[wrong].size > 1) {
-                expect(i, held, spare, ACROBOT_ERROR_MISALIGNED);
-            }
-            how = BY_OVERLAP;
-            if (NAMES[wrong].is_array && row->holder != NOTHING) {
-                expect(i, held, spare, ACROBOT_ERROR_OVERLAP);
-            }
-        }
-        wrong = -1;
-        CHECK(same(held, saved, SIZES[row->holder]) && same(spare, ZERO, sizeof spare));
+    const int init = tested->init;
+    __builtin_memset(other, 0, MOST);
+    expect(0, other, ACROBOT_ERROR_NOT_INITIALIZED);
+    hold(init == 0 ? BATCH : 0);
+    prepare(function);
+    expect(0, held, ACROBOT_ERROR_NOT_INITIALIZED);
+    hold(init);
+    prepare(function);
+    __builtin_memcpy(other, held, MOST);
+    expect(0, other, tested->arguments[0].align == 64 ? ACROBOT_ERROR_MOVED : status);
+}
+
+// Tries each address in the arena: one in the held bytes is rejected.
+static void sweep(int slot, int status)
+{
+    const struct argument *argument = &tested->arguments[slot];
+    for (size_t at = 0; at + argument->size <= sizeof arena; at += argument->align) {
+        const bool is_apart = at + argument->size <= MARGIN || at >= MARGIN + size_of_held;
+        expect(slot, arena + at, is_apart ? status : ACROBOT_ERROR_OVERLAP);
     }
 }
 
-// Tries each address in the arena: one in the held bytes must be rejected, and none of them change.
-static void results(void)
+// A wrong number is reported, and no result is written.
+static void wrong(int slot, int status)
 {
-    for (int i = 0; i < ROWS; i++) {
-        const struct call *row = &TABLE[i];
-        const size_t size = SIZES[row->holder], align = row->size < 8 ? row->size : 8;
-        if (row->optional == NONE) {
+    __builtin_memset(outputs, 0, sizeof outputs);
+    expect(slot, ones, status);
+    for (int i = 0; i < SLOTS && status == ACROBOT_ERROR_OUT_OF_RANGE; i++) {
+        const struct argument *output = &tested->arguments[i];
+        if (output->role == OUTPUT && same_text(output->name, "error")) {
+            CHECK(((acrobot_error_t *)(void *)outputs[i])->rule[0] != 0);
+        } else if (output->role == OUTPUT && !output->is_apart) {
+            CHECK(same(outputs[i], ZEROS, output->size));
+        }
+    }
+}
+
+static void test(int function)
+{
+    hold(TABLE[function].init);
+    prepare(function);
+    const int status = status_of("", ACROBOT_OK);
+    for (int slot = 0; slot < SLOTS; slot++) {
+        const struct argument *argument = &tested->arguments[slot];
+        if (argument->role == NUMBER || argument->role == INPUT) {
+            wrong(slot, status_of(argument->name, ACROBOT_ERROR_OUT_OF_RANGE));
+        }
+        if (argument->role == NUMBER || argument->role == NONE) {
             continue;
         }
-        const int without = row->optional == OPTIONAL ? row->status : ACROBOT_ERROR_NULL;
-        expect(i, hold(row->holder), NULL, without);
-        __builtin_memcpy(held, saved, size);
-        if (align > 1) {
-            expect(i, held, spare + 1, ACROBOT_ERROR_MISALIGNED);
+        expect(slot, pointers[slot], status);
+        expect(slot, NULL, argument->is_optional ? status : ACROBOT_ERROR_NULL);
+        if (argument->align > 1) {
+            expect(slot, (uint8_t *)pointers[slot] + 1, ACROBOT_ERROR_MISALIGNED);
         }
-        for (size_t at = 0; at + row->size <= sizeof arena && size > 0; at += align) {
-            const bool is_apart = at + row->size <= MARGIN || at >= MARGIN + size;
-            expect(i, held, arena + at, is_apart ? row->status : ACROBOT_ERROR_OVERLAP);
-            CHECK((is_apart && row->status == ACROBOT_OK) || same(held, saved, size));
-            __builtin_memcpy(held, saved, size);
+        if (argument->role == HOLDER) {
+            copies(function, status);
+        } else if (argument->role == OUTPUT && size_of_held > 0) {
+            sweep(slot, status);
+        } else if (argument->role == INPUT && argument->is_apart && size_of_held > 0) {
+            expect(slot, held, ACROBOT_ERROR_OVERLAP);
+        }
+        for (int i = 0; i < SLOTS; i++) {
+            const struct argument *apart = &tested->arguments[i];
+            if (i != slot && argument->is_apart && apart->is_apart && argument->role != STRUCT &&
+                (argument->role == OUTPUT || apart->role == OUTPUT) &&
+                argument->align <= apart->align) {
+                expect(slot, pointers[i], ACROBOT_ERROR_OVERLAP);
+            }
         }
     }
 }
 
 int main(void)
 {
-    acrobot_regression_t nothing;
     acrobot_planner_t planner;
-    reversed.length1.kind = ACROBOT_DRAW_UNIFORM;
-    reversed.length1.low = 2;
-    reversed.length1.high = 1;
-    ACCEPTED(acrobot_controller_init(&a_controller, &RIGHT, NULL));
-    ACCEPTED(acrobot_linearize(&GOOD, &REST, 0, &linear_model, NULL));
-    ACCEPTED(acrobot_linearize_step(&GOOD, &REST, 0, &step_model, NULL));
-    ACCEPTED(acrobot_problem_init(&a_problem, &GOOD, 1, 0, NULL));
-    ACCEPTED(acrobot_planner_init(&planner, &a_problem, NULL));
-    ACCEPTED(acrobot_planner_feedback(&planner, &feedback));
-    ACCEPTED(acrobot_regression_init(&nothing));
-    ACCEPTED(acrobot_regression_fit(&nothing, &fit_of_nothing));
-    holders();
-    inputs();
-    results();
+    acrobot_regression_t regression;
+    __builtin_memset(ones, 0xFF, sizeof ones);
+    ACCEPTED(acrobot_task_params(ACROBOT_TASK_GYMNASIUM, a_params, NULL));
+    const acrobot_settings_t settings = {*a_params, 6, {4096, 1024}, 5};
+    *a_settings = settings;
+    ACCEPTED(acrobot_linearize(a_params, a_state, 0, a_linear_model, NULL));
+    for (int i = 0; i < COUNT; i++) {
+        ACCEPTED(acrobot_linearize_step(a_params, a_state, 0, &a_step_model[i], NULL));
+    }
+    ACCEPTED(acrobot_problem_init(a_problem, a_params, 1, 0, NULL));
+    ACCEPTED(acrobot_planner_init(&planner, a_problem, NULL));
+    ACCEPTED(acrobot_planner_feedback(&planner, a_feedback));
+    ACCEPTED(acrobot_regression_init(&regression));
+    ACCEPTED(acrobot_regression_fit(&regression, a_fit));
+    ACCEPTED(acrobot_controller_init(a_controller, a_settings, NULL));
+#ifdef ACROBOT_HAS_SNAPSHOTS
+    acrobot_batch_t *batch;
+    ACCEPTED(acrobot_batch_init(held, SIZE, COUNT, 0, true, 1, &batch));
+    ACCEPTED(acrobot_batch_save(batch, a_bytes, SIZE, &saved));
+#endif
+    for (int i = 0; i < FUNCTIONS; i++) {
+        test(i);
+    }
     return report("misuse");
 }

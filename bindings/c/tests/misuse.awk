@@ -1,0 +1,80 @@
+# Reads acrobot.h and writes, for misuse.c, a call of each function with pointers of an array `p`,
+# and a table of what they point to: arguments, and after a struct of pointers its members.
+BEGIN {
+  arrays = "^(actions|bytes|final_observations|gains|improved|knots|mask|models|observations|plan|" \
+    "rewards|samples|seeds|terminated|torques|truncated)$"
+  # No arrays, but they must not overlap others either.
+  apart = "^(controller|cost_to_go|results|seed)$"
+  optional = "[.](error|options)$|_reset.*[.]observation$|options_t[.]|results_t[.].*observations$"
+  holders["memory_t"] = 1
+}
+{ sub(/ *\/\/.*/, "") }
+/^typedef struct/ { fields = "" }
+/^  [^ ].*;$/ { fields = fields $0 }
+/^} acrobot_/ {
+  type = substr($2, 1, length($2) - 1)
+  if (fields ~ /bytes\[ACROBOT/) holders[type] = 1
+  if (fields ~ /[*]/) members[type] = fields
+}
+/^#if.*__wasm__/ || /^#endif/ && guarded { guarded = !guarded; print; table = table $0 "\n" }
+/^acrobot_status_t/ { owner = $2; sub(/[(].*/, "", owner) }
+owner { text = text $0 }
+owner && /[)];$/ {
+  slots = 0; rows = ""; init = -1
+  call = arguments(text)
+  print "static acrobot_status_t on_" owner "(void **p)\n{\n    return " owner "(" call ");\n}"
+  table = table "    {\"" owner "\", on_" owner ", " init ", {" rows "}},\n"
+  functions++
+  owner = text = ""
+}
+END { print "static const struct function TABLE[] = {\n" table "};\nenum { BATCH = " inits["memory_t"] " };" }
+
+function arguments(text, list, n, i, call) {
+  sub(/^[^(]*[(]/, "", text); sub(/[)];$/, "", text)
+  n = split(text, list, /, */)
+  for (i = 1; i <= n; i++) call = call (i > 1 ? ", " : "") argument(list[i])
+  return call
+}
+
+# Adds a row, and returns the argument in C.
+function argument(text, slot, is_const, name, type, pointed, kind, good, list, n, i) {
+  slot = slots
+  sub(/^ +/, "", text); is_const = sub(/^const /, "", text)
+  name = text; sub(/[)]?(\[.*)?$/, "", name); sub(/.*[ *]/, "", name)
+  type = text
+  if (!sub("[*]" name, "*", type)) return number(substr(text, 1, index(text, " ") - 1), name)
+  pointed = type; sub(/ ?[(][*][)]| ?[*]$/, "", pointed)
+  if (slot == 0 && pointed ~ /^(void|acrobot_batch_t)$/) pointed = "memory_t"
+  kind = pointed in members ? "STRUCT" : is_const || pointed in holders ? "INPUT" : "OUTPUT"
+  good = "a_" (pointed ~ /^acrobot/ ? substr(pointed, 9, length(pointed) - 10) : name)
+  if (slot == 0 && pointed in holders) {
+    if (!(pointed in inits)) inits[pointed] = functions + 0
+    kind = owner ~ /_init|_load/ ? "MADE" : "HOLDER"; init = inits[pointed]
+  }
+  add(kind, name, pointed, kind == "INPUT" ? good : "NULL")
+  if (kind == "STRUCT") {
+    n = split(members[pointed], list, /;/)
+    text = owner; owner = pointed
+    for (i = 1; i < n; i++) argument(list[i])
+    owner = text
+  }
+  return "(" (is_const ? "const " : "") type ")p[" slot "]"
+}
+
+# In a struct it needs a slot, too.
+function number(type, name) {
+  if (owner ~ /_t$/) add("NONE", name, type, "(void *)1")
+  else if (type ~ /^(float|double|int)$/) {
+    add("NUMBER", name, type, "a_" type)
+    return "*(" type " *)p[" slots - 1 "]"
+  }
+  if (name == "length" && rows ~ /bytes/) return "saved"
+  return name ~ /^(count|length)$/ ? "COUNT" : name == "size" ? "SIZE" : 1
+}
+
+function add(kind, name, type, good, count) {
+  count = name == "bytes" ? "SIZE" : name ~ arrays ? "COUNT" : 1
+  rows = rows "\n        ARGUMENT(" kind ", " name ", " type ", " count ", " \
+    (count != 1 || name ~ apart) ", " ((owner "." name) ~ optional) ", " good "),"
+  slots++
+}
