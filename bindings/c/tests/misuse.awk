@@ -1,8 +1,8 @@
 # Reads acrobot.h and writes, for misuse.c, a call of each function with pointers of an array `p`,
 # and a table of what they point to: arguments, and after a struct of pointers its members.
 BEGIN {
-  arrays = "^(actions|bytes|final_observations|gains|improved|knots|mask|models|observations|plan|" \
-    "rewards|samples|seeds|terminated|torques|truncated)$"
+  arrays = "^(actions|bytes|final_observations|gains|improved|knots|mask|models|observations|" \
+    "plan|rewards|samples|seeds|terminated|torques|truncated)$"
   # No arrays, but they must not overlap others either.
   apart = "^(controller|cost_to_go|results|seed)$"
   optional = "[.](error|options)$|_reset.*[.]observation$|options_t[.]|results_t[.].*observations$"
@@ -27,7 +27,10 @@ owner && /[)];$/ {
   functions++
   owner = text = ""
 }
-END { print "static const struct function TABLE[] = {\n" table "};\nenum { BATCH = " inits["memory_t"] " };" }
+END {
+  print "static const struct function TABLE[] = {\n" table "};"
+  print "enum { BATCH = " inits["memory_t"] " };"
+}
 
 function arguments(text, list, n, i, call) {
   sub(/^[^(]*[(]/, "", text); sub(/[)];$/, "", text)
