@@ -40,17 +40,17 @@ function arguments(text, list, n, i, call) {
 }
 
 # Adds a row, and returns the argument in C.
-function argument(text, slot, is_const, name, type, pointed, kind, good, list, n, i) {
-  slot = slots
+function argument(text, at, is_const, name, type, pointed, kind, good, list, n, i) {
+  at = slots
   sub(/^ +/, "", text); is_const = sub(/^const /, "", text)
   name = text; sub(/[)]?(\[.*)?$/, "", name); sub(/.*[ *]/, "", name)
   type = text
   if (!sub("[*]" name, "*", type)) return number(substr(text, 1, index(text, " ") - 1), name)
   pointed = type; sub(/ ?[(][*][)]| ?[*]$/, "", pointed)
-  if (slot == 0 && pointed ~ /^(void|acrobot_batch_t)$/) pointed = "memory_t"
+  if (at == 0 && pointed ~ /^(void|acrobot_batch_t)$/) pointed = "memory_t"
   kind = pointed in members ? "STRUCT" : is_const || pointed in holders ? "INPUT" : "OUTPUT"
   good = "a_" (pointed ~ /^acrobot/ ? substr(pointed, 9, length(pointed) - 10) : name)
-  if (slot == 0 && pointed in holders) {
+  if (at == 0 && pointed in holders) {
     if (!(pointed in inits)) inits[pointed] = functions + 0
     kind = owner ~ /_init|_load/ ? "MADE" : "HOLDER"; init = inits[pointed]
   }
@@ -61,16 +61,18 @@ function argument(text, slot, is_const, name, type, pointed, kind, good, list, n
     for (i = 1; i < n; i++) argument(list[i])
     owner = text
   }
-  return "(" (is_const ? "const " : "") type ")p[" slot "]"
+  return "(" (is_const ? "const " : "") type ")p[" at "]"
 }
 
-# In a struct it needs a slot, too.
-function number(type, name) {
-  if (owner ~ /_t$/) add("NONE", name, type, "(void *)1")
-  else if (type ~ /^(float|double|int)$/) {
-    add("NUMBER", name, type, "a_" type)
+function number(type, name, good) {
+  if (type ~ /^(float|double|int)$/) good = "a_" type
+  if (name == "index" || name == "count" && owner ~ /_batch_/) good = "a_" name
+  if (good) {
+    add("NUMBER", name, type, good)
     return "*(" type " *)p[" slots - 1 "]"
   }
+  # A member has a place.
+  if (owner ~ /_t$/) add("NONE", name, type, "(void *)1")
   if (name == "length" && rows ~ /bytes/) return "saved"
   return name ~ /^(count|length)$/ ? "COUNT" : name == "size" ? "SIZE" : 1
 }

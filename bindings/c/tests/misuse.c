@@ -24,6 +24,7 @@ static bool a_mask[COUNT];
 static float a_torques[COUNT], a_float[] = {.001f};
 static double a_bounds[] = {-1, 1}, a_double[] = {1};
 static int a_int[] = {1};
+static size_t a_count[] = {COUNT}, a_index[] = {1};
 // By `main`.
 static acrobot_params_t a_params[1];
 static acrobot_linear_model_t a_linear_model[1];
@@ -133,6 +134,9 @@ static const struct {
     {"acrobot_plan_torque", "after", ACROBOT_OK},
     {"", "action", ACROBOT_ERROR_UNKNOWN_ACTION},
     {"", "bytes", ACROBOT_ERROR_DAMAGED_SNAPSHOT},
+    {"acrobot_batch_init", "count", ACROBOT_ERROR_BUFFER_TOO_SMALL},
+    {"", "count", ACROBOT_ERROR_WRONG_COUNT},
+    {"", "index", ACROBOT_ERROR_NO_SUCH_INDEX},
     {"", "controller", ACROBOT_ERROR_NOT_INITIALIZED},
     {"", "seed", ACROBOT_OK},
     // Good arguments: a recording at rest determines nothing, and the bytes are those of a batch.
