@@ -4,10 +4,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-  Controller, Estimator, Planner, Replanner, SwingUp, deviationFrom, identify, planTorque,
-  regulator,
+  Controller, Estimator, Planner, Replanner, deviationFrom, identify, planTorque, regulator,
 } from "../dist/control.js";
-import { Acrobot } from "../dist/index.js";
 import { assertRejected } from "./module.mjs";
 
 const state = (theta1, theta2 = 0, dtheta1 = 0, dtheta2 = 0) =>
@@ -15,87 +13,71 @@ const state = (theta1, theta2 = 0, dtheta1 = 0, dtheta2 = 0) =>
 const HANGING = state(0);
 const UPRIGHT = state(Math.PI);
 const EYE = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
-const PARAMS = { dt: 0.01 };
+const PARAMS = { dt: 0.05 };
 const planned = () => {
-  const planner = new Planner(PARAMS, 7);
-  return [planner, planner.plan(HANGING, { steps: 1100, seed: 0 })];
+  const planner = new Planner(PARAMS, 8);
+  return [planner, planner.plan(HANGING, { steps: 80, seed: 3 })];
 };
+
 test("a plan is improved in place for other weights and another start", () => {
-  const [, plan] = planned();
+  const [planner, plan] = planned();
   const jumps = ({ torques }) =>
     torques.slice(1).reduce((sum, torque, i) => sum + (torque - torques[i]) ** 2, 0);
   const before = jumps(plan);
-  const smooth = new Planner(PARAMS, 7, { torqueChange: 10, angles: [0.1, 0] });
-  const costs = [1, 30, 30].map((iterations) => smooth.improve(state(0.05), iterations, plan));
-  assert.ok(costs[0] > costs[1] && costs[1] >= costs[2], costs.join());
+  new Planner(PARAMS, 8, { torqueChange: 10, angles: [0.1, 0] }).improve(state(0.05), 30, plan);
   assert.ok(jumps(plan) < before / 2);
   assert.equal(plan.states[0], Math.fround(0.05));
-  assert.ok(smooth.holdsFrom(UPRIGHT) && !smooth.withVelocityClamp().holdsFrom(HANGING));
   // A rejected plan is as before.
   const copy = structuredClone(plan);
-  assert.throws(() => smooth.improve(state(0, 0, 3e38), 2, plan), /must be finite in each element/);
+  const rule = /must be finite in each element/;
+  assert.throws(() => planner.improve(state(0, 0, 3e38), 2, plan), rule);
   assert.deepEqual(plan, copy);
+  assert.equal(planner.plan(HANGING, { steps: 10, tries: 3 }), null);
 });
 
-const near = (one, other, most) => assert.ok(Math.abs(one - other) < most, `${one}, ${other}`);
+test("a planner holds where link 2 stays below its bound, or is clamped to it", () => {
+  const planner = new Planner({ dt: 0.02, maxVelocity2: 0.5 }, 10);
+  const held = () => [HANGING, state(3.1), UPRIGHT].map((each) => planner.holdsFrom(each));
+  assert.deepEqual(held(), [false, false, true]);
+  planner.withVelocityClamp();
+  assert.deepEqual(held(), [false, true, true]);
+});
 
-test("a controller and a replanner swing a machine with encoders up", () => {
-  // RealAIGym's acrobot, whose motor has 6 N m.
-  const links = { length1: 0.2, length2: 0.3, mass1: 0.523, mass2: 0.626 };
-  const centers = { centerOfMass1: 0.2, centerOfMass2: 0.256, inertia1: 0.011, inertia2: 0.0099 };
-  const bounds = { maxVelocity1: Infinity, maxVelocity2: Infinity };
-  const params = { ...links, ...centers, ...bounds, dt: 0.002 };
-  const settings = { params, limit: 6, counts: [4096, 4096], ticks: 5 };
-  const [controller, replanner] = [new Controller(settings), new Replanner(settings)];
-  const machine = new Acrobot({ params });
-  machine.state = state(0.05);
-  for (let tick = 0; tick < 4000; tick++) {
-    const { theta1, theta2 } = machine.state;
-    const counts = [theta1, theta2].map((angle) => Math.round((angle / 2 / Math.PI) * 4096));
-    machine.stepTorque(controller.tick(...counts));
-    if (tick % 10) continue;
-    replanner.exchange(controller);
-    replanner.work();
-  }
-  near(deviationFrom(machine.state, UPRIGHT).theta1, 0, 0.1);
-  near(controller.state.theta2, machine.state.theta2, 0.01);
-  near(controller.params.mass2, 0.626, 0.1);
+const SETTINGS = { params: { dt: 0.002, maxVelocity1: Infinity }, limit: 6, counts: [4096, 1024] };
+
+test("estimates follow what is measured", () => {
+  const estimator = new Estimator(PARAMS, { angleStd: 0.001, torqueStd: 0.01 });
+  assert.equal(estimator.stateStd.theta1, Infinity);
+  estimator.correct(0.5, -0.25);
+  assert.deepEqual(estimator.state, state(0.5, -0.25));
+  estimator.predict(0);
+  assert.ok(estimator.state.dtheta1 < 0 && estimator.stateStd.theta1 < 0.5);
+  const controller = new Controller({ ...SETTINGS, ticks: 5 });
+  controller.tick(1024, 128);
+  const { theta1, theta2 } = deviationFrom(controller.state, state(Math.PI / 2, Math.PI / 4));
+  assert.ok(Math.abs(theta1) + Math.abs(theta2) < 0.01);
   assert.equal(controller.params.maxVelocity1, 3.4028234663852886e38);
-});
-
-test("without a plan, the torque pumps energy and then holds", () => {
-  const swingUp = new SwingUp(PARAMS, 7);
-  const acrobot = new Acrobot({ seed: 42, params: PARAMS });
-  for (let i = 0; i < 6000; i++) acrobot.stepTorque(swingUp.torque(acrobot.state));
-  assert.ok(acrobot.tipHeight > 1.999);
-  assert.equal(new Planner(PARAMS, 7).plan(HANGING, { steps: 10, tries: 3 }), null);
 });
 
 test("invalid arguments are rejected with Rust's messages", () => {
   const [planner, plan] = planned();
   const make = (limit, cost) => () => new Planner(PARAMS, limit, cost);
-  const hold = (q, r = 1, at = UPRIGHT, params = PARAMS) => () => regulator(params, q, r, at);
-  const first = (...row) => [row, ...EYE.slice(1)];
-  const settings = { params: PARAMS, limit: 6, counts: [4096, 4096], ticks: 5 };
+  const hold = (q, params = PARAMS) => () => regulator(params, q, 1, UPRIGHT);
+  const settings = { ...SETTINGS, ticks: 5 };
   assertRejected([
-    ["RangeError", "dt must be finite and above 0 s", ["-1", hold(EYE, 1, UPRIGHT, { dt: -1 })]],
-    ["RangeError", "r must be finite and above 0 per (N m)²", ["-0.1", hold(EYE, -0.1)]],
-    ["TypeError", "q[0][1] must be a number", ["null", hold(first(1, null, 0, 0))]],
-    ["RangeError", "q must be symmetric and positive semidefinite",
-      ["0.5", hold(first(1, 0.5, 0, 0))], ["1", hold(first(-1, 0, 0, 0))]],
-    ["RangeError",
-      "target must be in equilibrium: at rest, accelerating at most 0.25 % of a fall",
-      ["0.5", hold(EYE, 1, state(0, 0, 0.5))]],
+    ["RangeError", "dt must be finite and above 0 s", ["-1", hold(EYE, { dt: -1 })]],
+    ["TypeError", "q[0][1] must be a number",
+      ["null", hold([[1, null, 0, 0], ...EYE.slice(1)])]],
     ["RangeError", "limit must be finite and above 0 N m", ["-0.3", make(-0.3)]],
-    ["TypeError", "steps must be an integer from 1 to 2^16 - 1",
-      ["undefined", () => planner.plan(HANGING, {})]],
+    ["RangeError", "torqueChange must be finite and at least 0 per (N m)²",
+      ["-0.1", make(1, { torqueChange: -0.1 })]],
+    ["RangeError", "angles must be finite and at least 0 per s",
+      ["-0.1", make(1, { angles: [-0.1, -0.2] })]],
     ["RangeError", "steps must be an integer from 1 to 2^16 - 1",
       ["65536", () => planner.plan(HANGING, { steps: 65_536 })]],
     ["RangeError",
       "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^64 - 1",
       [`${2n ** 64n}n`, () => planner.plan(HANGING, { steps: 9, seed: 2n ** 64n })]],
-    ["RangeError", "theta1 must be a finite number of rad",
-      ["NaN", () => planner.plan(state(NaN), { steps: 10 })]],
     ["TypeError", "plan must be one that a planner returns",
       ["null", () => planTorque(null, 0, HANGING)]],
     ["TypeError", "plan[0][5] must be a finite number",
@@ -108,8 +90,6 @@ test("invalid arguments are rejected with Rust's messages", () => {
         () => planTorque(plan, plan.torques.length, state(0, 1e39))]],
     ["RangeError", "angleStd must be above 0 and at most 2 rad",
       ["3", () => new Estimator(PARAMS, { angleStd: 3, torqueStd: 1 })]],
-    ["TypeError", "torqueStd must be a number",
-      ["undefined", () => new Estimator(PARAMS, { angleStd: 1 })]],
     ["RangeError", "recording.angles must have 2 elements",
       ["1", () => identify({ angles: [1], torques: [1] }, PARAMS)]],
     ["RangeError", "angles must be finite in each element",
@@ -121,17 +101,10 @@ test("invalid arguments are rejected with Rust's messages", () => {
     ["TypeError", "controller must be a Controller",
       ["[object Planner]", () => new Replanner(settings).exchange(planner)]],
   ]);
-  const rejects = (call, message) => assert.throws(call, { name: "RangeError", message });
-  const [one, two] = [-0.1, [-0.1, -0.2]];
-  const single = { torque: one, torqueChange: one, power: one, below: one, margin: one };
-  const weights = { ...single, arrival: one, angles: two };
-  for (const [name, weight] of Object.entries(weights)) {
-    rejects(make(1, { [name]: weight }), new RegExp(`^${name} must be finite and .*, got -0.1$`));
-  }
-  const reach = "the torque must reach each motion that grows or persists, but does not reach one";
-  rejects(hold(EYE, 1, UPRIGHT, { gravity: 0 }), reach);
+  const message = "the torque must reach each motion that grows or persists, but does not reach one";
+  assert.throws(hold(EYE, { gravity: 0 }), { name: "RangeError", message });
   planner.free();
   planner.free();
-  const message = "the planner has been freed";
-  assert.throws(() => planner.plan(HANGING, { steps: 10 }), { name: "Error", message });
+  const freed = { name: "Error", message: "the planner has been freed" };
+  assert.throws(() => planner.plan(HANGING, { steps: 10 }), freed);
 });
