@@ -18,7 +18,7 @@ const make = {
   acrobot: () => new Acrobot({ seed: 1 }),
   batch: () => new Batch({ seed: 1, count: 3 }),
 };
-/** Uses with arguments that have elements or properties. */
+/** Arguments that have elements or properties, and their uses. */
 const USES = {
   acrobot: [
     [PARAMS, (acrobot, params) => acrobot.setParams(params)],
@@ -32,18 +32,6 @@ const USES = {
     [[true, 0, 1], (batch, mask) => batch.resetMasked(mask)],
     [new Array(12).fill(0.5), (batch, states) => batch.setStates(states)],
     [STATE, (batch, state) => batch.setStateOf(1, state)],
-  ],
-};
-/** Other uses. */
-const OTHERS = {
-  acrobot: [
-    ...["reset", "step", "stepTorque", "sample"].map((name) => (acrobot) => acrobot[name](1)),
-    ...["observation", "state", "params", "energy"].map((name) => (acrobot) => acrobot[name]),
-    (acrobot) => acrobot.snapshot(),
-  ],
-  batch: [
-    ...["reset", "sample", "stateOf", "paramsOf"].map((name) => (batch) => batch[name](0)),
-    (batch) => batch.states,
   ],
 };
 const both = () => [make.acrobot(), make.batch()];
@@ -64,7 +52,7 @@ for (const kind of ["acrobot", "batch"]) {
     const freed = make[kind]();
     freed[Symbol.dispose]();
     freed.free();
-    for (const use of OTHERS[kind]) assert.throws(() => use(freed), error);
+    for (const use of ["reset", "snapshot"]) assert.throws(() => freed[use](), error);
     for (const [given, use] of USES[kind]) {
       assert.throws(() => use(freed, given), error);
       const [one, others] = [make[kind](), []];

@@ -1,7 +1,7 @@
 // The policies reach the goal, and the learner learns the weights of the native program `swing_up`.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
@@ -31,12 +31,12 @@ test("policies reach the goal", () => {
   assert.ok(Math.abs(uprightEnergy(acrobot.params) - acrobot.energy) < 1e-4);
 });
 
-test("learnt weights are native ones, reach the goal, and each program loads the other's", () => {
+test("learnt weights are native ones, and reach the goal once loaded", () => {
   const seed = 123456789012345678901n;
   const learner = new Learner({ episodes: 100, seed });
   const returns = Array.from({ length: 100 }, () => learner.train());
   assert.ok(returns.every((sum) => Number.isInteger(sum) && sum >= -500 && sum < 0));
-  const [path, own] = ["native.bin", "own.bin"].map((name) => join(folder, name));
+  const path = join(folder, "native.bin");
   assert.equal(swingUp("--episodes", "100", "--seed", String(seed), "--save", path), null);
   const weights = readFileSync(path);
   assert.ok(weights.equals(learner.save()), "the weights differ from native ones");
@@ -44,8 +44,6 @@ test("learnt weights are native ones, reach the goal, and each program loads the
   const loaded = new Learner();
   loaded.load(weights);
   assert.ok(play((acrobot) => loaded.act(acrobot), { seed: 7 }) < 200);
-  writeFileSync(own, learner.save());
-  assert.equal(swingUp("--episodes", "0", "--load", own), null);
 });
 
 test("a learner learns with the parameters of an acrobot", () => {
