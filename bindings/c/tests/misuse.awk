@@ -54,7 +54,8 @@ function argument(text, at, is_const, name, type, pointed, kind, good, list, n, 
     if (!(pointed in inits)) inits[pointed] = functions + 0
     kind = owner ~ /_init|_load/ ? "MADE" : "HOLDER"; init = inits[pointed]
   }
-  add(kind, name, pointed, kind == "INPUT" ? good : "NULL")
+  add(kind, name, pointed, kind == "INPUT" ? good : kind == "OUTPUT" ? "outputs[" at "]" : \
+    kind == "STRUCT" ? "&pointers[" at + 1 "]" : "arena + MARGIN")
   if (kind == "STRUCT") {
     n = split(members[pointed], list, /;/)
     text = owner; owner = pointed
@@ -79,6 +80,10 @@ function number(type, name, good) {
 
 function add(kind, name, type, good, count) {
   count = name == "bytes" ? "SIZE" : name ~ arrays ? "COUNT" : 1
+  if (good ~ /^a_/ && !(good in declared)) {
+    declared[good] = 1
+    print "static " type " " good "[" (count == "SIZE" ? count : type in holders ? 1 : "COUNT") "];"
+  }
   rows = rows "\n        ARGUMENT(" kind ", " name ", " type ", " count ", " \
     (count != 1 || name ~ apart) ", " ((owner "." name) ~ optional) ", " good "),"
   slots++

@@ -1,5 +1,5 @@
 // Misuse is reported, and a call that is rejected changes nothing. misuse.awk finds the functions
-// and their arguments in the header; where this file lacks an argument, the compiler names it.
+// and their arguments in the header. These are zeros, except those that `main` sets.
 
 #include "check.h"
 
@@ -9,35 +9,9 @@
 
 typedef ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) uint8_t memory_t[SIZE];
 
-// Arguments that are accepted.
-static acrobot_state_t a_state[] = {{3.1415927f, 0, 0, 0}};
-static acrobot_weights_t a_weights[] = {{{{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}}, 1}};
-static acrobot_noise_t a_noise[] = {{.001f, .01f}};
-static acrobot_parameter_std_t a_parameter_std[] = {{.1f, 0, 0, 0, 0, 0, 0, 0, 0, 0}};
-static acrobot_sample_t a_sample[COUNT];
-static acrobot_knot_t a_knot[COUNT];
-static acrobot_draws_t a_draws[1];
-static uint32_t a_seed[] = {7};
-static uint64_t a_seeds[COUNT];
-static uint8_t a_actions[COUNT];
-static bool a_mask[COUNT];
-static float a_torques[COUNT], a_float[] = {.001f};
-static double a_bounds[] = {-1, 1}, a_double[] = {1};
-static int a_int[] = {1};
-static size_t a_count[] = {COUNT}, a_index[] = {1};
-// By `main`.
-static acrobot_params_t a_params[1];
-static acrobot_linear_model_t a_linear_model[1];
-static acrobot_step_model_t a_step_model[COUNT];
-static acrobot_problem_t a_problem[1];
-static acrobot_feedback_t a_feedback[1];
-static acrobot_fit_t a_fit[1];
-static acrobot_settings_t a_settings[1];
-static acrobot_controller_t a_controller[1];
 // The most that an argument has, except the memory of a batch.
 #ifdef ACROBOT_HAS_SNAPSHOTS
 #define WIDTH SIZE
-static uint8_t a_bytes[SIZE];
 static size_t saved;
 #else
 #define WIDTH 512
@@ -58,11 +32,6 @@ struct function {
     int init; // in TABLE, or below 0
     struct argument arguments[SLOTS];
 };
-#define ARGUMENT(role, name, type, count, is_apart, is_optional, good) \
-    {#name, role, sizeof(type) * (count), __alignof__(type), is_apart, is_optional, good}
-#include "misuse.h"
-enum { FUNCTIONS = sizeof TABLE / sizeof TABLE[0] };
-
 #define MARGIN 192
 #define MOST sizeof(acrobot_controller_t)
 ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t arena[MARGIN + MOST + MARGIN];
@@ -72,9 +41,15 @@ ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t outputs[SLOTS][(WIDTH + 63) 
 static uint8_t before[MOST];
 static const uint8_t ZEROS[MOST] = {0};
 static uint8_t *const held = arena + MARGIN;
+static size_t size_of_held;
+// The arguments of a call.
 static void *pointers[SLOTS];
 static const struct function *tested;
-static size_t size_of_held;
+
+#define ARGUMENT(role, name, type, count, is_apart, is_optional, good) \
+    {#name, role, sizeof(type) * (count), __alignof__(type), is_apart, is_optional, good}
+#include "misuse.h"
+enum { FUNCTIONS = sizeof TABLE / sizeof TABLE[0] };
 
 // Good arguments.
 static void prepare(int function)
@@ -82,14 +57,7 @@ static void prepare(int function)
     tested = &TABLE[function];
     __builtin_memset(outputs, 0, sizeof outputs);
     for (int i = 0; i < SLOTS; i++) {
-        const struct argument *argument = &tested->arguments[i];
-        switch (argument->role) {
-        case MADE:
-        case HOLDER: pointers[i] = held; break;
-        case STRUCT: pointers[i] = &pointers[i + 1]; break;
-        case OUTPUT: pointers[i] = outputs[i]; break;
-        default: pointers[i] = argument->good;
-        }
+        pointers[i] = tested->arguments[i].good;
     }
 }
 
@@ -237,7 +205,16 @@ int main(void)
 {
     acrobot_planner_t planner;
     acrobot_regression_t regression;
+    const acrobot_weights_t weights = {{{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}}, 1};
+    const acrobot_noise_t noise = {.001f, .01f};
     __builtin_memset(ones, 0xFF, sizeof ones);
+    // Where zeros are rejected.
+    *a_float = .001f;
+    *a_double = 1;
+    *a_count = COUNT;
+    *a_weights = weights;
+    *a_noise = noise;
+    a_state->theta1 = 3.1415927f;
     ACCEPTED(acrobot_task_params(ACROBOT_TASK_GYMNASIUM, a_params, NULL));
     const acrobot_settings_t settings = {*a_params, 6, {4096, 1024}, 5};
     *a_settings = settings;
