@@ -164,28 +164,29 @@ static void replay_batch(int task, const acrobot_reset_options_t *options,
 }
 
 // A result of parameters and a state.
-#define OF_MACHINE(type, function, ...) \
+#define GET(type, function, ...) \
     const acrobot_params_t machine_ = machine(params); \
     const acrobot_state_t state_ = state_of(state); \
     type found; \
-    ACCEPTED(function(&machine_, &state_, __VA_ARGS__, NULL)); \
+    ACCEPTED(function(&machine_, &state_, __VA_ARGS__, &found, NULL))
+#define OF_MACHINE(...) \
+    GET(__VA_ARGS__); \
     COMPARE(found)
-#define derivative() OF_MACHINE(acrobot_rates_t, acrobot_derivative, (float)torque, &found)
-#define linearize() OF_MACHINE(acrobot_linear_model_t, acrobot_linearize, (float)torque, &found)
-#define linearize_step() \
-    OF_MACHINE(acrobot_step_model_t, acrobot_linearize_step, (float)torque, &found)
-#define mass_matrix() \
-    (void)torque; \
-    typedef float matrix[2][2]; \
-    OF_MACHINE(matrix, acrobot_mass_matrix, &found)
+#define derivative() OF_MACHINE(acrobot_rates_t, acrobot_derivative, (float)torque)
+#define linearize() OF_MACHINE(acrobot_linear_model_t, acrobot_linearize, (float)torque)
+#define linearize_step() OF_MACHINE(acrobot_step_model_t, acrobot_linearize_step, (float)torque)
 #define inverse_dynamics() \
+    GET(acrobot_forces_t, acrobot_inverse_dynamics, (float)accelerations[0], \
+        (float)accelerations[1]); \
+    (void)torque; \
+    COMPARE(found.torques)
+#define mass_matrix() \
     const acrobot_params_t machine_ = machine(params); \
     const acrobot_state_t state_ = state_of(state); \
-    acrobot_forces_t found; \
+    float found[2][2]; \
     (void)torque; \
-    ACCEPTED(acrobot_inverse_dynamics(&machine_, &state_, (float)accelerations[0], \
-                                      (float)accelerations[1], &found, NULL)); \
-    COMPARE(found.torques)
+    ACCEPTED(acrobot_mass_matrix(&machine_, &state_, &found, NULL)); \
+    COMPARE(found)
 #define deviation() \
     const acrobot_state_t state_ = state_of(state), target_ = state_of(target); \
     acrobot_state_t found; \
@@ -205,43 +206,34 @@ static void replay_batch(int task, const acrobot_reset_options_t *options,
     COMPARE(found)
 
 // Regulators, about an equilibrium.
-#define REGULATOR(kind) \
-    replay_regulator(kind, machine(params), state_of(state), (float)torque, q, (float)r[0])
-enum { OF_PARAMS, CONTINUOUS, OF_STEPS, ALONG };
-#define regulator() REGULATOR(OF_PARAMS)
-#define lqr() REGULATOR(CONTINUOUS)
-#define dlqr() REGULATOR(OF_STEPS)
-#define tvlqr() REGULATOR(ALONG)
-static void replay_regulator(int kind, acrobot_params_t params, acrobot_state_t target,
-                             float torque, const double *q, float r)
+static acrobot_weights_t weights_of(const double *q, const double *r)
 {
     acrobot_weights_t weights;
-    acrobot_linear_model_t continuous;
-    acrobot_step_model_t models[3];
-    acrobot_lqr_t found;
-    acrobot_state_t gains[3];
-    float cost_to_go[4][4];
     to_floats(weights.q, q, 16);
-    to_floats(cost_to_go, q, 16);
-    weights.r = r;
-    ACCEPTED(acrobot_linearize(&params, &target, torque, &continuous, NULL));
-    for (int i = 0; i < 3; i++) {
-        ACCEPTED(acrobot_linearize_step(&params, &target, torque, &models[i], NULL));
-    }
-    switch (kind) {
-    case OF_PARAMS:
-        ACCEPTED(acrobot_regulator(&params, &target, torque, &weights, &found, NULL));
-        break;
-    case CONTINUOUS: ACCEPTED(acrobot_lqr(&continuous, &weights, &found, NULL)); break;
-    case OF_STEPS: ACCEPTED(acrobot_dlqr(&models[0], &weights, &found, NULL)); break;
-    default:
-        ACCEPTED(acrobot_tvlqr(models, &weights, &cost_to_go, gains, 3, NULL));
-        COMPARE(gains);
-        COMPARE(cost_to_go);
-        return;
-    }
-    COMPARE(found);
+    weights.r = (float)*r;
+    return weights;
 }
+#define regulator() \
+    const acrobot_weights_t weights = weights_of(q, r); \
+    OF_MACHINE(acrobot_lqr_t, acrobot_regulator, (float)torque, &weights)
+#define OF_MODEL(type, linearize_, function) \
+    const acrobot_weights_t weights = weights_of(q, r); \
+    acrobot_lqr_t of_model; \
+    GET(type, linearize_, (float)torque); \
+    ACCEPTED(function(&found, &weights, &of_model, NULL)); \
+    COMPARE(of_model)
+#define lqr() OF_MODEL(acrobot_linear_model_t, acrobot_linearize, acrobot_lqr)
+#define dlqr() OF_MODEL(acrobot_step_model_t, acrobot_linearize_step, acrobot_dlqr)
+#define tvlqr() \
+    const acrobot_weights_t weights = weights_of(q, r); \
+    acrobot_state_t gains[3]; \
+    float cost_to_go[4][4]; \
+    GET(acrobot_step_model_t, acrobot_linearize_step, (float)torque); \
+    const acrobot_step_model_t models[] = {found, found, found}; \
+    to_floats(cost_to_go, q, 16); \
+    ACCEPTED(acrobot_tvlqr(models, &weights, &cost_to_go, gains, 3, NULL)); \
+    COMPARE(gains); \
+    COMPARE(cost_to_go)
 
 static void compare_knots(const acrobot_knot_t *knots, size_t count)
 {
