@@ -32,8 +32,10 @@ function assertSame(batch, others, observations = batch.observations) {
 }
 
 test("acrobots of a batch have the bits of acrobots alone", () => {
-  const options = { task: "balance", maxSteps: 25, params: PARAMS, draws };
-  const [batch, others] = made(options, { autoreset: "SameStep" });
+  const settings = { task: "balance", maxSteps: 25 };
+  const [batch, others] = made({ ...settings, params: PARAMS, draws }, { autoreset: "SameStep" });
+  const added = { count: COUNT, ownParams: true, autoreset: "SameStep" };
+  assert.deepEqual(batch.settings, { ...settings, ...added });
   const random = randoms();
   for (let count = 1; count <= 60; count++) {
     const actions = Uint8Array.from({ length: COUNT }, () => random(3));
@@ -81,6 +83,8 @@ test("acrobots with own parameters step on until a mask resets them", () => {
         other.step(0);
       }
     }
+    const waiting = Batch.restore(batch.snapshot()).step(new Uint8Array(COUNT));
+    assert.ok(waiting.done.every((each) => each === 1));
     const observations = batch.resetMasked(given, seed);
     others.forEach((other, i) => {
       if (mask[i]) other.reset(seed && child(seed, i));

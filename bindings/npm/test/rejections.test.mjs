@@ -92,11 +92,8 @@ test("other arguments are rejected with the value and the rule, and nothing chan
   const many = (options) => () => new Batch(options);
   const picture = (options) => () => acrobot.draw({ arc() {} }, options);
   const rows = [
-    ["RangeError", `action ${ACTION}`, ["1.5", () => acrobot.step(1.5)]],
-    ["TypeError", `action ${ACTION}`,
-      ["1n", () => acrobot.step(1n)], ['"1"', () => acrobot.step("1")]],
+    ["TypeError", `action ${ACTION}`, ["1n", () => acrobot.step(1n)]],
     ["TypeError", "torque must be a finite number of N m", ['"1"', () => acrobot.stepTorque("1")]],
-    ["TypeError", "mass1[1] must be a number", ['"2"', draw({ mass1: [1, "2"] })]],
     ["TypeError", DRAW, ["null", draw({ mass1: null })]],
     ["RangeError", "mass1 must have 2 elements", ["3", draw({ mass1: [1, 2, 3] })]],
     ["TypeError", `draws must be among ${names.slice(0, -1).join(", ")}`,
@@ -109,7 +106,6 @@ test("other arguments are rejected with the value and the rule, and nothing chan
     ["RangeError", "gravity must be a finite number of m/s²",
       ["1e+39, which is Infinity in single precision", set({ gravity: 1e39 })]],
     ["TypeError", `params must be among ${names.join(", ")}`, ["mass", set({ mass: 1 })]],
-    ["TypeError", "theta2 must be a number", ["undefined", () => (acrobot.state = { theta1: 0 })]],
     ["RangeError", "maxSteps must be an integer from 1 to 2^32 - 1",
       ["4294967296", make({ maxSteps: 2 ** 32 })]],
     ["TypeError", "options must be among seed, params, maxSteps, task, draws",
@@ -134,7 +130,6 @@ test("other arguments are rejected with the value and the rule, and nothing chan
     ["RangeError", "ownParams must be true for parameters of each acrobot",
       ["false", () => batch.setParamsOf(0, { mass1: 2 })]],
     ["TypeError", "ownParams must be true or false", ["1", many({ count: 1, ownParams: 1 })]],
-    ["TypeError", "options must be a plain object", ["undefined", many()]],
     ["TypeError", "count must be an integer from 1 to 2^32 - 1", ["undefined", many({})]],
     ["RangeError", "acrobots must fit into WebAssembly's memory of at most 4 GiB",
       ["4294967295 more", many({ count: 2 ** 32 - 1 })]],
