@@ -96,72 +96,59 @@ static const acrobot_reset_options_t *seeded(const double *seed, size_t words)
 }
 
 #ifdef ACROBOT_HAS_SNAPSHOTS
-static uint8_t bytes[2048];
-static size_t length;
-
-static void compare_snapshot(acrobot_status_t status, const double *snapshot, size_t size)
+static void compare_snapshot(const uint8_t *bytes, size_t length, const double *snapshot)
 {
-    CHECK(status == ACROBOT_OK && length == size);
-    for (size_t i = 0; i < size; i++) {
+    for (size_t i = 0; i < length; i++) {
         CHECK(bytes[i] == (uint8_t)snapshot[i]);
     }
 }
 #define SNAPSHOT(save, holder) \
-    compare_snapshot(save(holder, bytes, sizeof bytes, &length), snapshot, size)
+    uint8_t bytes[COUNT(snapshot)]; \
+    size_t length; \
+    ACCEPTED(save(holder, bytes, sizeof bytes, &length)); \
+    CHECK(length == sizeof bytes); \
+    compare_snapshot(bytes, length, snapshot)
 #else
-#define SNAPSHOT(save, holder) (void)snapshot, (void)size
+#define SNAPSHOT(save, holder) (void)snapshot
 #endif
 
 #define episode() \
-    replay_episode((int)task, seeded(seed, COUNT(seed)), draws_of(draws), torques, \
-                   COUNT(torques), snapshot, COUNT(snapshot))
-static void replay_episode(int task, const acrobot_reset_options_t *options,
-                           const acrobot_draws_t *draws, const double *torques, size_t steps,
-                           const double *snapshot, size_t size)
-{
-    acrobot_t acrobot;
-    acrobot_params_t params;
-    acrobot_step_t step;
-    ACCEPTED(acrobot_init_task(&acrobot, task, 0, NULL));
-    ACCEPTED(acrobot_reset_with(&acrobot, options, NULL, NULL));
-    ACCEPTED(acrobot_draw_params(&acrobot, draws, NULL));
-    ACCEPTED(acrobot_params(&acrobot, &params));
-    COMPARE_PARAMS(params);
-    for (size_t i = 0; i < steps; i++) {
-        ACCEPTED(acrobot_step_torque(&acrobot, (float)torques[i], &step, NULL));
-        COMPARE(step.observation);
-        COMPARE(step.reward);
-    }
-    SNAPSHOT(acrobot_save, &acrobot);
-}
+    acrobot_t acrobot; \
+    acrobot_params_t params; \
+    acrobot_step_t step; \
+    ACCEPTED(acrobot_init_task(&acrobot, (int)task, 0, NULL)); \
+    ACCEPTED(acrobot_reset_with(&acrobot, seeded(seed, COUNT(seed)), NULL, NULL)); \
+    ACCEPTED(acrobot_draw_params(&acrobot, draws_of(draws), NULL)); \
+    ACCEPTED(acrobot_params(&acrobot, &params)); \
+    COMPARE_PARAMS(params); \
+    for (size_t i = 0; i < COUNT(torques); i++) { \
+        ACCEPTED(acrobot_step_torque(&acrobot, (float)torques[i], &step, NULL)); \
+        COMPARE(step.observation); \
+        COMPARE(step.reward); \
+    } \
+    SNAPSHOT(acrobot_save, &acrobot)
 
+ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_OWN_SIZE(ACROBOTS)];
 #define batch() \
+    acrobot_batch_t *holder; \
+    float rewards[ACROBOTS], inputs[ACROBOTS]; \
+    bool terminated[ACROBOTS], truncated[ACROBOTS]; \
+    acrobot_observation_t rows[ACROBOTS]; \
+    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL}; \
     CHECK(count == ACROBOTS); \
-    replay_batch((int)task, seeded(seed, COUNT(seed)), draws_of(draws), (uint32_t)max_steps, \
-                 torques, COUNT(torques), snapshot, COUNT(snapshot))
-static void replay_batch(int task, const acrobot_reset_options_t *options,
-                         const acrobot_draws_t *draws, uint32_t max_steps, const double *torques,
-                         size_t count, const double *snapshot, size_t size)
-{
-    ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_OWN_SIZE(ACROBOTS)];
-    acrobot_batch_t *batch;
-    float rewards[ACROBOTS], inputs[ACROBOTS];
-    bool terminated[ACROBOTS], truncated[ACROBOTS];
-    acrobot_observation_t rows[ACROBOTS];
-    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL};
-    ACCEPTED(acrobot_batch_init(memory, sizeof memory, ACROBOTS, task, true, 0, &batch));
-    ACCEPTED(acrobot_batch_set_draws(batch, draws, NULL));
-    ACCEPTED(acrobot_batch_set_max_steps(batch, max_steps, NULL));
-    ACCEPTED(acrobot_batch_set_autoreset(batch, ACROBOT_AUTORESET_SAME_STEP, NULL));
-    ACCEPTED(acrobot_batch_reset_with(batch, options, NULL));
-    for (size_t i = 0; i < count; i += ACROBOTS) {
-        to_floats(inputs, torques + i, ACROBOTS);
-        ACCEPTED(acrobot_batch_step_torque(batch, inputs, &results, ACROBOTS));
-        COMPARE(rewards);
-        COMPARE(rows);
-    }
-    SNAPSHOT(acrobot_batch_save, batch);
-}
+    ACCEPTED( \
+        acrobot_batch_init(memory, sizeof memory, ACROBOTS, (int)task, true, 0, &holder)); \
+    ACCEPTED(acrobot_batch_set_draws(holder, draws_of(draws), NULL)); \
+    ACCEPTED(acrobot_batch_set_max_steps(holder, (uint32_t)max_steps, NULL)); \
+    ACCEPTED(acrobot_batch_set_autoreset(holder, ACROBOT_AUTORESET_SAME_STEP, NULL)); \
+    ACCEPTED(acrobot_batch_reset_with(holder, seeded(seed, COUNT(seed)), NULL)); \
+    for (size_t i = 0; i < COUNT(torques); i += ACROBOTS) { \
+        to_floats(inputs, torques + i, ACROBOTS); \
+        ACCEPTED(acrobot_batch_step_torque(holder, inputs, &results, ACROBOTS)); \
+        COMPARE(rewards); \
+        COMPARE(rows); \
+    } \
+    SNAPSHOT(acrobot_batch_save, holder)
 
 // A result of parameters and a state.
 #define GET(type, function, ...) \
@@ -245,36 +232,33 @@ static void compare_knots(const acrobot_knot_t *knots, size_t count)
 }
 
 #define plan() \
+    static const acrobot_state_t HANGING = {0, 0, 0, 0}, UPRIGHT = {3.1415927f, 0, 0, 0}; \
+    static const size_t STEPS[] = {0, 2, KNOTS}; \
+    static acrobot_knot_t knots[KNOTS], better[KNOTS]; \
+    const acrobot_params_t machine_ = machine(params); \
+    const acrobot_state_t start_ = state_of(start); \
+    acrobot_problem_t problem; \
+    acrobot_planner_t planner; \
+    acrobot_feedback_t after; \
+    float cost, torque; \
+    size_t found; \
     CHECK(steps == KNOTS); \
-    replay_plan(machine(params), (float)limit, (float)elbow, (uint32_t)tries, (uint64_t)seed[0], \
-                state_of(start), (uint32_t)iterations, (size_t)length)
-static void replay_plan(acrobot_params_t params, float limit, float elbow, uint32_t tries,
-                        uint64_t seed, acrobot_state_t start, uint32_t iterations, size_t count)
-{
-    static const acrobot_state_t HANGING = {0, 0, 0, 0}, UPRIGHT = {3.1415927f, 0, 0, 0};
-    static acrobot_knot_t knots[KNOTS], better[KNOTS];
-    acrobot_problem_t problem;
-    acrobot_planner_t planner;
-    acrobot_feedback_t after;
-    float cost, torque;
-    size_t found;
-    ACCEPTED(acrobot_problem_init(&problem, &params, limit, elbow, NULL));
-    ACCEPTED(acrobot_planner_init(&planner, &problem, NULL));
-    ACCEPTED(acrobot_planner_plan(&planner, &HANGING, tries, seed, knots, KNOTS, &found, NULL));
-    CHECK(found == count);
-    compare_knots(knots, count);
-    ACCEPTED(acrobot_planner_improve(&planner, &start, iterations, knots, better, count, &cost,
-                                     NULL));
-    COMPARE(cost);
-    compare_knots(better, count);
-    ACCEPTED(acrobot_planner_feedback(&planner, &after));
-    for (size_t i = 0; i < 3; i++) {
-        static const size_t STEPS[] = {0, 2, KNOTS};
-        const acrobot_state_t *state = i == 0 ? &start : &UPRIGHT;
-        ACCEPTED(acrobot_plan_torque(better, count, &after, STEPS[i], state, &torque, NULL));
-        COMPARE(torque);
+    ACCEPTED(acrobot_problem_init(&problem, &machine_, (float)limit, (float)elbow, NULL)); \
+    ACCEPTED(acrobot_planner_init(&planner, &problem, NULL)); \
+    ACCEPTED(acrobot_planner_plan(&planner, &HANGING, (uint32_t)tries, (uint64_t)seed[0], knots, \
+                                  KNOTS, &found, NULL)); \
+    CHECK(found == (size_t)length); \
+    compare_knots(knots, found); \
+    ACCEPTED(acrobot_planner_improve(&planner, &start_, (uint32_t)iterations, knots, better, \
+                                     found, &cost, NULL)); \
+    COMPARE(cost); \
+    compare_knots(better, found); \
+    ACCEPTED(acrobot_planner_feedback(&planner, &after)); \
+    for (size_t i = 0; i < 3; i++) { \
+        const acrobot_state_t *state = i == 0 ? &start_ : &UPRIGHT; \
+        ACCEPTED(acrobot_plan_torque(better, found, &after, STEPS[i], state, &torque, NULL)); \
+        COMPARE(torque); \
     }
-}
 
 #define swing_up() \
     const acrobot_params_t machine_ = machine(params); \
