@@ -20,7 +20,9 @@ BEGIN {
 /^acrobot_status_t/ { owner = $2; sub(/[(].*/, "", owner) }
 owner { text = text $0 }
 owner && /[)];$/ {
-  slots = 0; rows = ""; init = -1
+  slots = 0
+  init = -1
+  rows = ""
   call = arguments(text)
   print "static acrobot_status_t on_" owner "(void **p)\n{\n    return " owner "(" call ");\n}"
   table = table "    {\"" owner "\", on_" owner ", " init ", {" rows "}},\n"
@@ -33,7 +35,7 @@ END {
 }
 
 function arguments(text, list, n, i, call) {
-  sub(/^[^(]*[(]/, "", text); sub(/[)];$/, "", text)
+  gsub(/^[^(]*[(]|[)];$/, "", text)
   n = split(text, list, /, */)
   for (i = 1; i <= n; i++) call = call (i > 1 ? ", " : "") argument(list[i])
   return call
@@ -42,23 +44,28 @@ function arguments(text, list, n, i, call) {
 # Adds a row, and returns the argument in C.
 function argument(text, at, is_const, name, type, pointed, kind, good, list, n, i) {
   at = slots
-  sub(/^ +/, "", text); is_const = sub(/^const /, "", text)
-  name = text; sub(/[)]?(\[.*)?$/, "", name); sub(/.*[ *]/, "", name)
+  sub(/^ +/, "", text)
+  is_const = sub(/^const /, "", text)
+  name = text
+  gsub(/.*[ *]|[)]?(\[.*)?$/, "", name)
   type = text
   if (!sub("[*]" name, "*", type)) return number(substr(text, 1, index(text, " ") - 1), name)
-  pointed = type; sub(/ ?[(][*][)]| ?[*]$/, "", pointed)
+  pointed = type
+  sub(/ ?[(][*][)]| ?[*]$/, "", pointed)
   if (at == 0 && pointed ~ /^(void|acrobot_batch_t)$/) pointed = "memory_t"
   kind = pointed in members ? "STRUCT" : is_const || pointed in holders ? "INPUT" : "OUTPUT"
   good = "a_" (pointed ~ /^acrobot/ ? substr(pointed, 9, length(pointed) - 10) : name)
   if (at == 0 && pointed in holders) {
     if (!(pointed in inits)) inits[pointed] = functions + 0
-    kind = owner ~ /_init|_load/ ? "MADE" : "HOLDER"; init = inits[pointed]
+    init = inits[pointed]
+    kind = owner ~ /_init|_load/ ? "MADE" : "HOLDER"
   }
   add(kind, name, pointed, kind == "INPUT" ? good : kind == "OUTPUT" ? "outputs[" at "]" : \
     kind == "STRUCT" ? "&pointers[" at + 1 "]" : "arena + MARGIN")
   if (kind == "STRUCT") {
     n = split(members[pointed], list, /;/)
-    text = owner; owner = pointed
+    text = owner
+    owner = pointed
     for (i = 1; i < n; i++) argument(list[i])
     owner = text
   }
