@@ -3,7 +3,7 @@
 import acrobot_rs
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotSwingupEnv, control
+from acrobot_rs import AcrobotEnv
 from acrobot_rs._native import Acrobot
 
 BOTH = pytest.mark.parametrize(
@@ -62,20 +62,3 @@ def test_each_parameter_changes_both_environments_alike(name, kind, many):
                     np.testing.assert_allclose(found, each, rtol=0, atol=2e-5)
     # Neither the equations of motion nor the rewards of the recording contain it.
     assert (all_states[0] == all_states[1]).all() == (name == "LINK_LENGTH_2")
-
-
-@pytest.mark.parametrize(
-    ("kind", "torques", "actions", "expected"),
-    [
-        (AcrobotSwingupEnv, [-1.0, 3.0], [np.inf, 0.25, -0.5, -5.0], [3.0, 0.75, -0.5, -1.0]),
-        (AcrobotSwingupEnv, [1.0, 3.0], [0.0], [1.0]),
-        (AcrobotContinuousEnv, [0.5, -3.0, 2.0], [-np.inf, 0.25, 3.0], [-3.0, 0.25, 2.0]),
-    ],
-)
-def test_actions_are_torques_or_parts_of_them(kind, torques, actions, expected):
-    env = kind(AVAIL_TORQUE=torques)
-    env.state = [1.0, 0.0, 0.0, 0.0]
-    states = control.simulate(env.state, expected, env)
-    for action, state in zip(actions, states[1:]):
-        env.step(np.float32([action]))
-        assert (env.state == state).all()
