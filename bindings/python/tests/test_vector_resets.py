@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from acrobot_rs.arrays import reset_mask, warn_of_other_sines
 from gymnasium.vector import AutoresetMode
-from vectors import assert_equal, assert_resets_equal, different, pair
+from vectors import assert_equal, assert_resets_equal, different, make_vec, pair
 
 
 def test_other_bytes_than_0_and_1_in_a_mask_become_1():
@@ -65,3 +65,11 @@ def test_gymnasium_s_episodes_bit_identically(mode):
         np.testing.assert_array_equal(theirs.get_attr("_elapsed_steps"), ours.elapsed_steps)
         ends, end = ends + [each.sum() for each in found[2:4]], found[2] | found[3]
     assert (ends > 100).all(), ends
+
+
+def test_given_states_have_numpy_s_sines():
+    states = np.random.default_rng(0).uniform(-3, 3, (1000, 4)).astype(np.float32)
+    envs = make_vec(1000, gymnasium_episodes=True)
+    observations, _ = envs.reset(options={"state": states})
+    sines = np.stack([np.cos(states[:, :2]), np.sin(states[:, :2])], axis=2)
+    assert (observations[:, :4] == sines.reshape(1000, 4)).all()
