@@ -102,7 +102,6 @@ CASES = [
     ([MANY, DRAWN], "LINK_MOI_1", TypeError, [None], "a number, got None"),
     ([MANY, DRAWN], "LINK_MOI", TypeError, [Uniform(1, 2)], "a number; a reset .* LINK_MOI_2"),
     (VECTORS, "LINK_COM_POS_2", ValueError, [Uniform(0, 1)], "^LINK_MOI_2 must be above 0 if"),
-    ([MANY, TORQUES], "length", AttributeError, [1.0], "^.* has no attribute 'length'; .*, dt"),
     ([MANY, TORQUES], "elapsed_steps", AttributeError, [1.0], "^.*elapsed_steps"),
     ([AcrobotEnv()], step, AssertionError, [0], "^.* no state yet; call reset before step"),
     ([AcrobotSwingupEnv()], step, ResetNeeded, [[0]], "^.* no state yet; call reset before step"),
