@@ -47,7 +47,7 @@ def test_a_step_after_the_time_limit_resets():
     short = dm_control.load("acrobot", "swingup", {"time_limit": 0.05}, {"dt": 0.025})
     steps = [short.step(0.0) for _ in range(4)]
     assert [step.step_type for step in steps] == [0, 1, 2, 0] and steps[2].discount == 1.0
-    assert short.control_timestep() == 0.025 and env.control_timestep() == 0.01
+    assert short.control_timestep() == 0.025
 
 
 @pytest.mark.parametrize("options", [{"n_sub_steps": 3}, {"control_timestep": 0.03}])
@@ -61,18 +61,18 @@ def test_a_step_can_last_longer(options):
 
 
 @pytest.mark.parametrize(
-    ("error", "message", "arguments"),
+    ("message", "arguments"),
     [
-        (ValueError, "domain_name must be .*, got 'reacher'", ["reacher", "swingup"]),
-        (ValueError, "task_name must be one of .*, got 'balance'", ["acrobot", "balance"]),
-        (ValueError, "time_limit must be above 0 s", ["acrobot", "swingup", {"time_limit": 0}]),
-        (ValueError, "legacy_step must be True", [*SWINGUP, {"legacy_step": False}]),
-        (ValueError, "n_sub_steps must be None", [*SWINGUP, {"n_sub_steps": 1, **TIMESTEP}]),
-        (ValueError, "control_timestep / dt must be .*, got 1.5", [*SWINGUP, TIMESTEP]),
+        ("domain_name must be .*, got 'reacher'", ["reacher", "swingup"]),
+        ("task_name must be one of .*, got 'balance'", ["acrobot", "balance"]),
+        ("time_limit must be above 0 s", ["acrobot", "swingup", {"time_limit": 0}]),
+        ("legacy_step must be True", [*SWINGUP, {"legacy_step": False}]),
+        ("n_sub_steps must be None", [*SWINGUP, {"n_sub_steps": 1, **TIMESTEP}]),
+        ("control_timestep / dt must be .*, got 1.5", [*SWINGUP, TIMESTEP]),
     ],
 )
-def test_invalid_arguments_are_rejected(error, message, arguments):
-    with pytest.raises(error, match=message):
+def test_invalid_arguments_are_rejected(message, arguments):
+    with pytest.raises(ValueError, match=message):
         dm_control.load(*arguments)
 
 
