@@ -71,5 +71,6 @@ def test_given_states_have_numpy_s_sines():
     states = np.random.default_rng(0).uniform(-3, 3, (1000, 4)).astype(np.float32)
     envs = make_vec(1000, gymnasium_episodes=True)
     observations, _ = envs.reset(options={"state": states})
-    sines = np.stack([np.cos(states[:, :2]), np.sin(states[:, :2])], axis=2)
+    angles = states[:, :2].copy()
+    sines = np.stack([np.cos(angles), np.sin(angles)], axis=2)
     assert (observations[:, :4] == sines.reshape(1000, 4)).all()
