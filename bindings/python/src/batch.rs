@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use acrobot::batch::{Autoreset, StepBuffers};
 use acrobot::numpy::SeedSequence;
 use acrobot::task::ResetBounds;
-use acrobot::{Error, ResetOptions, State};
+use acrobot::{ResetOptions, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2,
 };
@@ -82,16 +82,18 @@ impl Batch {
 
     /// Resets all acrobots, or those that the mask selects, to initial states within these bounds,
     /// or to given states. With a seed, each first takes the stream of its child; with seeds, each
-    /// whose seed is not `None` that of `default_rng(seed)`.
+    /// whose seed is not `None` that of `default_rng(seed)`. Writes the observations of all into an
+    /// array.
     fn reset(
         slf: &Bound<'_, Self>,
         seed: Option<Bound<'_, PyAny>>,
         seeds: Option<Vec<Option<Bound<'_, PyAny>>>>,
-        low: f64,
-        high: f64,
+        bounds: [f64; 2],
         mask: Option<PyReadonlyArray1<'_, bool>>,
         states: Option<PyReadonlyArray2<'_, f64>>,
+        observations: &Bound<'_, PyArray2<f32>>,
     ) -> PyResult<()> {
+        let [low, high] = bounds;
         let options = ResetOptions {
             seed: seed.map(parse).transpose()?,
             bounds: Some(ResetBounds::new(low, high).map_err(rejected)?),
@@ -104,6 +106,8 @@ impl Batch {
         let states = states.unwrap_or_default().as_chunks::<4>().0;
         check_states::<f32>(states)?; // observations are `f32`
         let engine = &mut alone(slf)?.engine;
+        let mut observations = observations.try_readwrite()?; // all calls can share this array
+        let rows = observations.as_slice_mut()?.as_chunks_mut().0;
         slf.py()
             .detach(|| {
                 with_batch!(engine, many => {
@@ -121,19 +125,10 @@ impl Batch {
                             many.batch.set_state(index, State::from(*state).cast())?;
                         }
                     }
-                    Ok::<_, Error>(())
+                    many.batch.observe(rows)
                 })
             })
             .map_err(rejected)
-    }
-
-    fn observe(
-        slf: &Bound<'_, Self>,
-        mut observations: PyReadwriteArray2<'_, f32>,
-    ) -> PyResult<()> {
-        let rows = observations.as_slice_mut()?.as_chunks_mut().0;
-        let this = alone(slf)?;
-        with_batch!(&this.engine, many => many.batch.observe(rows)).map_err(rejected)
     }
 
     /// Steps without Python's lock, and writes the observations into an array. The environment

@@ -1,5 +1,7 @@
 //! A batch of any arithmetic and task.
 
+use std::fmt::Display;
+
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
@@ -178,40 +180,36 @@ impl<A: Arithmetic> Many<A> {
 
     /// Checks the inputs of the next step and copies them.
     pub fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()> {
+        self.torques.clear();
         match inputs {
             Inputs::Actions(from) => {
-                self.torques.clear();
-                read(
-                    from.as_slice()?,
-                    &mut self.actions,
-                    |action| (0..3).contains(action),
-                    |_, action| action as u8,
-                    "0 (negative torque), 1 (none) or 2 (positive)",
-                )
+                let from = from.as_slice()?;
+                let rule = "0 (negative torque), 1 (none) or 2 (positive)";
+                check(from, |action| (0..3).contains(action), rule)?;
+                self.actions.clear();
+                self.actions.extend(from.iter().map(|&action| action as u8));
             }
             Inputs::Torques(from) => {
+                let (from, task) = (from.as_slice()?, *self.batch.task());
+                let rule = match task {
+                    AnyTask::Swingup => "a number from -1 to 1",
+                    _ => "a number, N m",
+                };
+                check(from, |torque| !torque.is_nan(), rule)?;
                 let is_own = from.len() > 1 && self.batch.has_own_params();
                 let bounds = |index| {
                     let params = self.batch.params(index).unwrap_or_default();
                     let [a, b, c] = params.torques.map(Real::to_f64);
                     (a.min(b).min(c), a.max(b).max(c))
                 };
-                let (first, task) = (bounds(0), *self.batch.task());
-                read(
-                    from.as_slice()?,
-                    &mut self.torques,
-                    |torque| !torque.is_nan(),
-                    |index, torque| {
-                        let (low, high) = if is_own { bounds(index) } else { first };
-                        A::Scalar::from_f64(torque_of(task, torque.into(), low, high))
-                    },
-                    match task {
-                        AnyTask::Swingup => "a number from -1 to 1",
-                        _ => "a number, N m",
-                    },
-                )
+                let first = bounds(0);
+                self.torques.extend(from.iter().enumerate().map(|(index, &torque)| {
+                    let (low, high) = if is_own { bounds(index) } else { first };
+                    A::Scalar::from_f64(torque_of(task, torque.into(), low, high))
+                }));
             }
         }
+        Ok(())
     }
 
     /// Steps on this thread, or on all threads of rayon's current pool, into the buffers.
@@ -251,23 +249,14 @@ pub fn torque_of(task: AnyTask, action: f64, low: f64, high: f64) -> f64 {
     torque.max(low).min(high)
 }
 
-/// Checks all inputs, then converts them.
-fn read<T: Copy + std::fmt::Display, U>(
-    from: &[T],
-    to: &mut Vec<U>,
-    valid: impl Fn(&T) -> bool,
-    convert: impl Fn(usize, T) -> U,
-    rule: &str,
-) -> PyResult<()> {
-    // No early exit, so that the compiler vectorizes the loop.
+/// Checks all inputs. There is no early exit, so that the compiler vectorizes the loop.
+fn check<T: Display>(from: &[T], valid: impl Fn(&T) -> bool, rule: &str) -> PyResult<()> {
     if !from.iter().fold(true, |all, input| all & valid(input))
         && let Some((index, input)) = from.iter().enumerate().find(|(_, input)| !valid(input))
     {
         let name = format!("actions[{index}]");
-        return Err(InvalidAction::new_err(must_be(&name, rule, input)));
+        return Err(InvalidAction::new_err(must_be(name, rule, input)));
     }
-    to.clear();
-    to.extend(from.iter().enumerate().map(|(index, &input)| convert(index, input)));
     Ok(())
 }
 

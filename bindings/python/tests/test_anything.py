@@ -1,8 +1,11 @@
 """Any object can be an argument: invalid ones are rejected and change nothing, nothing panics, and
-no result is NaN.
+no result is NaN. Copies and pickles continue bit-identically, and share nothing.
 
 With more examples: ``python -m pytest --hypothesis-profile=long tests/test_anything.py``.
 """
+
+import copy
+import pickle
 
 import acrobot_rs
 import gymnasium
@@ -12,7 +15,7 @@ from acrobot_rs.swingup import Swingup
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from vectors import SINGLE_KINDS
+from vectors import KINDS, SINGLE_KINDS
 
 #: What a call may raise. A panic in Rust raises none of these.
 REJECTIONS = (
@@ -49,6 +52,15 @@ KEYS = st.sampled_from(["low", "high", "reset_mask", "state", "state"])
 OPTIONS = st.none() | st.dictionaries(
     KEYS, st.lists(st.booleans()) | NUMBERS | STATES | st.lists(STATES, max_size=4) | ANYTHING
 )
+AGAIN = st.sampled_from([
+    *(copy.copy, copy.deepcopy),
+    *(lambda env, p=p: pickle.loads(pickle.dumps(env, p)) for p in (0, pickle.HIGHEST_PROTOCOL)),
+])  # fmt: skip
+VECTOR_KINDS = [kind for kind in KINDS if kind not in SINGLE_KINDS]
+OTHERS = [
+    (acrobot_rs.AcrobotVectorEnv, {name: value})
+    for name, value in (("copy", False), ("gymnasium_episodes", True), ("float64", True))
+]
 SEEDS = st.none() | st.integers(0, 2**200) | ANYTHING
 
 
@@ -68,36 +80,48 @@ def calls(seeds, values, states, actions, *others):
     )
 
 
-def play(env, sequence):
-    """Makes the calls of a sequence and checks the observations that they return."""
-    for function, *arguments in sequence:
-        before = env._native.__getstate__()
-        try:
-            result = function(env, *arguments)
-        except REJECTIONS:
-            assert env._native.__getstate__() == before, "a rejected call changed something"
-            continue
-        if isinstance(result, np.ndarray):
-            assert not np.isnan(result).any()
-        if env.state is not None:
-            assert np.isfinite(env.state).all()
+def play(env, sequence, again):
+    """Makes the calls of a sequence, the second half of them also to a copy, with equal results."""
+    env.np_random = np.random.default_rng(1)
+    env.action_space.seed(1)
+    envs = [env]
+    for index, (function, *arguments) in enumerate(sequence):
+        if index == len(sequence) // 2:
+            envs = [again(env), env]
+        results = []
+        for each in envs:
+            before = each._native.__getstate__()
+            try:
+                result = function(each, *arguments)
+            except REJECTIONS as error:
+                assert each._native.__getstate__() == before, "a rejected call changed something"
+                result = type(error)
+            if isinstance(result, np.ndarray):
+                assert not np.isnan(result).any()
+            if each.state is not None:
+                assert np.isfinite(each.state).all()
+            results.append([result, each._native.__getstate__(), each.parameters])
+        np.testing.assert_equal(results[0], results[-1])
+    samples = [each.action_space.sample() for each in envs]
+    np.testing.assert_equal(samples[0], samples[-1])
 
 
 @given(
-    st.sampled_from(SINGLE_KINDS),
+    *(AGAIN, st.sampled_from(SINGLE_KINDS)),
     st.sampled_from([None, "ansi", "ansi", "ansi", "rgb_array"]),
     calls(
         *(SEEDS, VALUES, STATES | ANYTHING),
         st.integers(0, 2) | ANYTHING | st.lists(NUMBERS, min_size=1, max_size=1) | ARRAYS,
     ),
 )
-def test_a_single_environment(kind, mode, sequence):
-    play(kind(mode), sequence)
+def test_a_single_environment(again, kind, mode, sequence):
+    play(kind(mode), sequence, again)
 
 
 @given(
-    *(st.integers(1, 4), st.integers(1, 4), st.sampled_from(["NextStep", "SameStep", "Disabled"])),
-    st.sampled_from([{}, {"copy": False}, {"gymnasium_episodes": True}, None]),
+    *(AGAIN, st.integers(1, 4), st.integers(1, 4)),
+    st.sampled_from(["NextStep", "SameStep", "Disabled"]),
+    st.sampled_from([(kind, {}) for kind in VECTOR_KINDS] + OTHERS),
     calls(
         *(SEEDS | st.lists(SEEDS, max_size=4), MANY, st.lists(STATES, max_size=4) | ANYTHING),
         st.lists(st.integers(0, 2), max_size=4) | ARRAYS | ANYTHING,
@@ -108,7 +132,7 @@ def test_a_single_environment(kind, mode, sequence):
         ),
     ),
 )
-def test_a_vector_environment(num_envs, limit, autoreset, others, sequence):
-    kind = acrobot_rs.AcrobotSwingupVectorEnv if others is None else acrobot_rs.AcrobotVectorEnv
-    arguments = {"render_mode": "ansi", "autoreset_mode": autoreset, **(others or {})}
-    play(kind(num_envs, limit, **arguments), sequence)
+def test_a_vector_environment(again, num_envs, limit, autoreset, made, sequence):
+    kind, others = made
+    arguments = {"render_mode": "ansi", "autoreset_mode": autoreset, **others}
+    play(kind(num_envs, limit, **arguments), sequence, again)

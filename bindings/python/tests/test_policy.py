@@ -137,37 +137,34 @@ def overflowing():
     return model
 
 
-@pytest.mark.parametrize(
-    ("error", "message", "model"),
-    [
-        (TypeError, "a layer must be Linear, or Tanh .*, got Normalize", dqn(Normalize())),
-        (TypeError, "a layer must be .*, got Tanh", dqn(Tanh(), Linear(6, 3))),
-        (TypeError, "the policy must be that of PPO, A2C, DQN or QR-DQN", Attributes(policy=1)),
-        (TypeError, "model must be .*, got 5", 5),
-        (ValueError, r"layer 0 must have weights of shape \(outputs, 6\)", dqn(Linear(4, 3))),
-        (ValueError, "must have 3 outputs, or 1 with a torque_limit, got 2", dqn(Linear(6, 2))),
-        (ValueError, "they differ on .* of 2000", overflowing()),
-        (ValueError, "torque_limit must be the torque of the swing-up's action 1", actor(SWINGUP)),
-    ],
-)
-def test_other_models_are_rejected(error, message, model, tmp_path):
-    with pytest.raises(error, match=message):
-        policy.save(model, tmp_path / "p")
-    assert not list(tmp_path.iterdir())
+def saving(model):
+    return lambda path: policy.save(model, path)
+
+
+def writing(outputs=3, weight=1.0, activation="none", limit=None):
+    layer = np.full((outputs, 6), weight), np.ones(outputs), activation
+    return lambda path: policy.write(path, [layer], limit)
 
 
 @pytest.mark.parametrize(
-    ("message", "outputs", "weight", "activation", "limit"),
+    ("error", "message", "call"),
     [
-        ("the activation of layer 0 must be one of", 3, 1.0, "elu", None),
-        ("the weights of layer 0 must be numbers, got ", 3, "1", "none", None),
-        ("numbers of layer 0 must be finite", 3, 1e300, "none", None),
-        *(("torque_limit must be finite and above 0 N m", 1, 1.0, "none", limit)
+        (TypeError, "a layer must be Linear, or .*, got Normalize", saving(dqn(Normalize()))),
+        (TypeError, "a layer must be .*, got Tanh", saving(dqn(Tanh(), Linear(6, 3)))),
+        (TypeError, "policy must be that of PPO, A2C, DQN or QR-DQN", saving(Attributes(policy=1))),
+        (TypeError, "model must be .*, got 5", saving(5)),
+        (ValueError, r"layer 0 must have .* shape \(outputs, 6\)", saving(dqn(Linear(4, 3)))),
+        (ValueError, "3 outputs, or 1 with a torque_limit, got 2", saving(dqn(Linear(6, 2)))),
+        (ValueError, "they differ on .* of 2000", saving(overflowing())),
+        (ValueError, "torque_limit must be the torque of the .* action 1", saving(actor(SWINGUP))),
+        (ValueError, "the activation of layer 0 must be one of", writing(activation="elu")),
+        (ValueError, "the weights of layer 0 must be numbers, got ", writing(weight="1")),
+        (ValueError, "numbers of layer 0 must be finite", writing(weight=1e300)),
+        *((ValueError, "torque_limit must be finite and above 0 N m", writing(1, limit=limit))
           for limit in (np.nan, 1e39, 1e-50, -2.0)),
     ],
 )  # fmt: skip
-def test_other_layers_are_rejected(message, outputs, weight, activation, limit, tmp_path):
-    layer = np.full((outputs, 6), weight), np.ones(outputs), activation
-    with pytest.raises(ValueError, match=message):
-        policy.write(tmp_path / "p", [layer], limit)
+def test_invalid_arguments_are_rejected(error, message, call, tmp_path):
+    with pytest.raises(error, match=message):
+        call(tmp_path / "p")
     assert not list(tmp_path.iterdir())

@@ -1,18 +1,17 @@
-"""The vector environment is used as SyncVectorEnv is."""
+"""The vector environment is used as SyncVectorEnv is, and has parameters of each environment."""
 
+import functools
 import multiprocessing
 import pickle
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 
+import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotBalanceVectorEnv, AcrobotContinuousVectorEnv, AcrobotEnv
-from acrobot_rs import AcrobotSwingupVectorEnv, AcrobotVectorEnv
-from gymnasium.error import InvalidAction
+from acrobot_rs import AcrobotContinuousEnv, AcrobotContinuousVectorEnv, AcrobotEnv
+from acrobot_rs import AcrobotVectorEnv, LogUniform, Uniform
 from gymnasium.vector import AutoresetMode
-from vectors import assert_equal, assert_resets_equal, different, make_vec, pair, rejects
+from vectors import assert_equal, assert_resets_equal, different, make_vec, pair
 
 
 def test_attributes_and_types_are_those_of_sync_vector_env():
@@ -29,69 +28,43 @@ def test_attributes_and_types_are_those_of_sync_vector_env():
     assert ours.reset()[0] is not ours.reset()[0], "a copy"
 
 
-@pytest.mark.parametrize(
-    ("kind", "actions"),
-    [
-        (AcrobotVectorEnv,
-         [[0, 1, 2, 3], [2**32] * 4, [0, 1, 2], [0.0, 1.0, 2.0, 0.0], 1, [True] * 4]),
-        (AcrobotContinuousVectorEnv,
-         [[[0.5]], [0.5] * 4, [[np.nan], [0.0], [0.0], [0.0]], [["0"]] * 4, [[True]] * 4,
-          np.zeros(4, np.float32), np.zeros((4, 1), object)]),
-        (AcrobotSwingupVectorEnv, [[[0.0], [np.nan], [0.0], [0.0]]]),
-    ],
-)  # fmt: skip
-def test_invalid_actions_are_rejected(kind, actions):
-    envs = kind(4)
-    envs.reset(seed=1)
-    rule = r"\w+ of shape \(4, ?1?\)|0|a number(, N m| from -1 to 1), got NaN"
-    for each in actions:
-        with rejects(envs, InvalidAction, rf"^actions(\[\d\])? must be ({rule})"):
-            envs.step(each)
+@pytest.mark.parametrize("numbers", [np.float32, np.float64])
+def test_states_are_read_only_copies(numbers):
+    envs = make_vec(3, gymnasium_episodes=numbers is np.float64)
+    assert (envs.reset()[0] != envs.reset()[0]).any(), "random without a seed"
+    for env in envs, AcrobotEnv():
+        assert (env.reset(seed=np.uint8(255))[0] == env.reset(seed=255)[0]).all()
+        assert env.np_random_seed == 255
+        env.state = numbers([0, 1, 2, 3, 4, 5, np.finfo(numbers).max, 7])[::2]
+        for array in env.state, getattr(env, "elapsed_steps", env.state):
+            with pytest.raises(ValueError, match="read-only"):
+                array[0] = 1
+        assert (env.state == [0, 2, 4, np.finfo(numbers).max]).all()
+        assert env.state.dtype == (numbers if env is envs else np.float64)
 
 
 @pytest.mark.parametrize(
     "convert",
-    [np.uint8, np.int32, lambda actions: actions.astype(">i8"), list,
-     lambda actions: np.repeat(actions, 2)[::2],
-     # Numbers after a header of one byte are not aligned. Gymnasium accepts them.
-     lambda actions: np.frombuffer(b"h" + actions.tobytes(), np.int64, offset=1)],
-)  # fmt: skip
-def test_actions_can_be_integers_of_any_type(convert):
-    envs, twin = make_vec(4), make_vec(4)
+    [
+        *(np.uint8, np.int32, np.ndarray.tolist),
+        *(lambda actions: actions.astype(">i8"), lambda x: np.stack([x, x], -1)[..., 0]),
+        # Numbers after a header of one byte are not aligned. Gymnasium accepts them.
+        lambda x: np.frombuffer(b"h" + x.tobytes(), x.dtype, offset=1).reshape(x.shape),
+    ],
+)
+@pytest.mark.parametrize(
+    ("kind", "actions"),
+    [
+        *((AcrobotEnv, np.array(2)), (AcrobotContinuousEnv, np.float32([1]))),
+        (functools.partial(AcrobotVectorEnv, 4), np.array([0, 1, 2, 0])),
+        (functools.partial(AcrobotContinuousVectorEnv, 4), np.float32([[0], [1], [2], [0]])),
+    ],
+)
+def test_actions_can_be_numbers_of_any_type(kind, actions, convert):
+    envs, twin = kind(), kind()
     for each in (envs, twin):
         each.reset(seed=1)
-    actions = np.array([0, 1, 2, 0])
     np.testing.assert_equal(envs.step(convert(actions)), twin.step(actions))
-
-
-@pytest.mark.parametrize(
-    ("kind", "name", "value"),
-    [
-        *((AcrobotVectorEnv, "num_envs", count) for count in (0, -1, 2**40, 2.0, "2")),
-        *((AcrobotVectorEnv, name, 0) for name in ("max_episode_steps", "threads")),
-        *((AcrobotVectorEnv, "render_mode", "human"), (AcrobotVectorEnv, "float64", True)),
-        *((kind, "gymnasium_episodes", True)
-          for kind in (AcrobotSwingupVectorEnv, AcrobotBalanceVectorEnv)),
-    ],
-)  # fmt: skip
-def test_invalid_arguments_are_rejected(kind, name, value):
-    with pytest.raises(ValueError, match=f"^{name} must be .*, got "):
-        kind(**{"num_envs": 2, "gymnasium_episodes": name == "float64", name: value})
-
-
-def test_environments_that_do_not_fit_into_memory_are_rejected():
-    """In a process that may use 4 GB."""
-    code = """if True:
-        import resource
-        import acrobot_rs
-        resource.setrlimit(resource.RLIMIT_AS, (2**32, 2**32))
-        try:
-            acrobot_rs.AcrobotVectorEnv(2**32 - 1)
-        except MemoryError as error:
-            print(error)
-    """
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert run.stdout.startswith("num_envs must be so few that they fit into"), run.stderr
 
 
 def test_pictures_are_those_of_single_environments():
@@ -102,23 +75,6 @@ def test_pictures_are_those_of_single_environments():
         single = AcrobotEnv("rgb_array")
         single.LINK_LENGTH_1, single.state = length, state
         assert (frame == single.render()).all()
-
-
-@pytest.mark.parametrize("gymnasium_episodes", [False, True])
-def test_states_can_be_set(gymnasium_episodes):
-    envs = make_vec(40, gymnasium_episodes=gymnasium_episodes)
-    envs.reset(seed=1)
-    assert envs.state.dtype == (np.float64 if gymnasium_episodes else np.float32)
-    for array in (envs.state, envs.elapsed_steps):
-        with pytest.raises(ValueError, match="read-only"):
-            array[0] = 1
-    beyond = envs.state.astype(float)
-    beyond[39, 3] = 1e39
-    if gymnasium_episodes:
-        envs.state = beyond
-    else:
-        with rejects(envs, ValueError, r"state\[39, 3\] must be in the range of .*, got 1e39"):
-            envs.state = beyond
 
 
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
@@ -191,3 +147,46 @@ def test_a_call_of_another_thread_during_a_call_is_rejected(kind):
     assert [type(each) for each in errors] == [RuntimeError] * 5
     assert all(str(each).startswith("another thread is using this") for each in errors)
     assert env.dt == 0.2
+
+
+@pytest.mark.parametrize("name", sorted({*AcrobotVectorEnv._NAMES} - {"LINK_MOI", "book_or_nips"}))
+def test_resets_draw_a_parameter_and_keep_others(name):
+    """`test_recorded.py` has the order and the numbers of draws."""
+    own = {each: np.linspace(0.5, 1.5, 20) for each in ("LINK_MASS_2", "dt")}
+    envs, mask = make_vec(20, **own), np.arange(20) % 2 == 0
+    draw = Uniform([0.1] * 3, [0.9, 0.9, 0.1]) if name == "AVAIL_TORQUE" else Uniform(0.1, 0.9)
+    setattr(envs, name, draw)
+    before = {each: envs.get_parameter(each) for each in envs._NAMES}
+    assert getattr(envs, name) == draw
+    envs.reset(options={"reset_mask": mask})
+    after = {each: envs.get_parameter(each) for each in envs._NAMES}
+    new, old = after.pop(name), before.pop(name)
+    assert (0.0999 < new[mask]).all() and (new[mask] < 0.9001).all()
+    assert (new != old).reshape(20, -1).any(axis=1).tolist() == mask.tolist()
+    np.testing.assert_equal(after, before)
+    setattr(envs, name, [1.0] * 3 if name == "AVAIL_TORQUE" else 1.0)
+    envs.reset()
+    assert (envs.get_parameter(name) == 1.0).all()
+
+
+def test_links_can_have_their_own_inertias():
+    envs = make_vec(3, LINK_MOI_1=0.5, LINK_MOI_2=LogUniform(1.0, 2.0))
+    envs.reset(seed=1)
+    assert (envs.get_parameter("LINK_MOI_1") == 0.5).all()
+    assert (envs.get_parameter("LINK_MOI_2") > 1.0).all()
+    envs.LINK_MOI = 3.0
+    assert envs.LINK_MOI_1 is None and (envs.get_parameter("LINK_MOI_1") == 3.0).all()
+
+
+def test_subclasses_can_draw_parameters_which_spaces_follow():
+    class Random(AcrobotContinuousVectorEnv):
+        MAX_VEL_1 = Uniform(20.0, 30.0)
+        AVAIL_TORQUE = Uniform([-3.0, 0.0, 1.0], [-2.0, 0.0, 2.0])
+
+    envs = Random(50)
+    assert envs.single_observation_space.high[4] == 30
+    assert envs.single_action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
+    envs.reset(seed=1)
+    assert len(set(envs.get_attr("MAX_VEL_1"))) == 50
+    envs.AVAIL_TORQUE = [[-1, 0, 1], [-5, 0, 1], [-1, 0, 4]] + [[0, 0, 0]] * 47
+    assert envs.action_space == gymnasium.spaces.Box(-5.0, 4.0, (50, 1), np.float32)

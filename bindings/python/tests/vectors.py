@@ -10,17 +10,12 @@ import numpy as np
 import pytest
 from gymnasium.envs.classic_control import AcrobotEnv as Gymnasiums
 from acrobot_rs.arrays import warn_of_other_sines
-from gymnasium.vector import AutoresetMode
 
 KINDS = [getattr(acrobot_rs, name) for name in acrobot_rs.__all__ if name.endswith("Env")]
 SINGLE_KINDS = [kind for kind in KINDS if issubclass(kind, gymnasium.Env)]
 V1 = "acrobot_rs/Acrobot-v1"
-CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
-SWINGUPS = ["acrobot_rs/AcrobotSwingup-v0", "acrobot_rs/AcrobotSwingupSparse-v0"]
-BALANCE = "acrobot_rs/AcrobotBalance-v0"
 #: The parameters that Gymnasium's environment has, too. `gravity` has no name there.
 SHARED = [name for name in acrobot_rs.AcrobotEnv._NAMES if hasattr(Gymnasiums, name)]
-MODES = pytest.mark.parametrize("mode", AutoresetMode)
 
 
 with warnings.catch_warnings(record=True) as OTHER_SINES:

@@ -160,7 +160,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             The observations of all environments, of shape ``(num_envs, 6)``, and empty infos.
         """
         options = options or {}
-        low, high = arrays.reset_bounds(options, self._BOUND)
+        bounds = arrays.reset_bounds(options, self._BOUND)
         mask = arrays.reset_mask(options, self.num_envs)
         states = None
         if "state" in options:
@@ -168,12 +168,11 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         child_of, seeds = arrays.seeds_of(seed, self.num_envs, self._gymnasium_episodes)
         if seeds is not None and mask is not None:
             seeds = [each if some else None for each, some in zip(seeds, mask, strict=True)]
-        self._native.reset(child_of, seeds, low, high, mask, states)
+        observations = self._empty() if self._observations is None else self._observations
+        self._native.reset(child_of, seeds, bounds, mask, states, observations)
         if not isinstance(seed, list | tuple):
             super().reset(seed=arrays.plain_seed(seed))
         self._ready = True
-        observations = self._empty() if self._observations is None else self._observations
-        self._native.observe(observations)
         if self._gymnasium_episodes:
             self._observe_initial_states(observations, self.elapsed_steps == 0)
         return observations, {}
