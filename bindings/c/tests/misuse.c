@@ -13,6 +13,7 @@ typedef float rewards_t[COUNT], matrix2_t[2][2], matrix4_t[4][4];
 static const acrobot_params_t GOOD = WITH(1), MASSLESS = WITH(0);
 static const acrobot_state_t REST = {0, 0, 0, 0}, UP = {3.14159f, 0, 0, 0}, FLUNG = {INF, 0, 0, 0};
 static const acrobot_weights_t ONES = {{{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}}, 1};
+static const acrobot_covariances_t EVEN = {{{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}}, {1, 1}};
 static const acrobot_noise_t QUIET = {.001f, .01f};
 static const acrobot_parameter_std_t DOUBT = {.1f, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 static const acrobot_settings_t RIGHT = {WITH(1), 6, {4096, 1024}, 5};
@@ -40,6 +41,7 @@ static acrobot_feedback_t feedback;
     INPUT(acrobot_state_t, FAR, &FLUNG, false) \
     INPUT(acrobot_draws_t, REVERSED, &reversed, false) \
     INPUT(acrobot_weights_t, WEIGHTS, &ONES, false) \
+    INPUT(acrobot_covariances_t, VARIANCES, &EVEN, false) \
     INPUT(acrobot_linear_model_t, MODEL, &linear_model, false) \
     INPUT(acrobot_step_model_t, STEPS, &step_model, true) \
     INPUT(acrobot_problem_t, PROBLEM, &a_problem, false) \
@@ -178,6 +180,7 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     COMPUTE(acrobot_lqr_t, acrobot_regulator(PARAMS, STATE, 0, WEIGHTS, out, &error)) \
     COMPUTE(acrobot_lqr_t, acrobot_lqr(MODEL, WEIGHTS, out, &error)) \
     COMPUTE(acrobot_lqr_t, acrobot_dlqr(STEPS, WEIGHTS, out, &error)) \
+    COMPUTE(acrobot_lqe_t, acrobot_dlqe(STEPS, VARIANCES, out, &error)) \
     COMPUTE(matrix4_t, acrobot_tvlqr(STEPS, WEIGHTS, out, &gain, 1, &error)) \
     COMPUTE(acrobot_problem_t, acrobot_problem_init(out, PARAMS, 1, 0, &error)) \
     COMPUTE(float, acrobot_plan_torque(KNOTS, 1, AFTER, 0, STATE, out, &error)) \

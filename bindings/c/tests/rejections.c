@@ -15,6 +15,10 @@ static const acrobot_state_t REST = {0, 0, 0, 0}, INFINITE = {INF, 0, 0, 0}, MOV
                              FASTEST = {0, 0, 0, 3e38f}, BACK = {0, 0, 0, -3e38f};
 static const acrobot_weights_t ONES = {ONE_BY_ONE, 1}, ZEROS = {{{0}}, 1}, FREE = {ONE_BY_ONE, 0},
                                UNEVEN = {{{1, 2}, {0, 1}}, 1}, NEGATIVE = {{{-1}}, 1};
+static const acrobot_covariances_t EVEN = {ONE_BY_ONE, {1, 1}}, SILENT = {{{0}}, {1, 1}},
+                                   EXACT = {ONE_BY_ONE, {1, 0}};
+static const acrobot_step_model_t GROWING = {{{0}, {0}, {0, 0, 2}}, {0}},
+                                  LASTING = {{{1}}, {0}};
 static const acrobot_sample_t STILL = {{0, 0}, {0, 0}};
 
 #define params_rejects(message, set) \
@@ -173,7 +177,16 @@ static void of_models(void)
     FAILS(NOT_DETECTABLE, "gain", acrobot_lqr_t, lqr, &linear_model, &ZEROS);
     CHECK(same_text(acrobot_error_text(error.kind),
                     "q must weight each motion that persists, but does not weight one"));
-    CHECK(same_text(error.rule, "finite; target, dt, gravity and weights allow no regulator"));
+    CHECK(same_text(error.rule, "finite; target, dt, gravity, weights or noise allow none"));
+    FAILS(OUT_OF_RANGE, "s", acrobot_lqe_t, dlqe, &step_model, &EXACT);
+    // No angle shows a velocity.
+    FAILS(NOT_OBSERVABLE, "gain", acrobot_lqe_t, dlqe, &GROWING, &EVEN);
+    CHECK(same_text(acrobot_error_text(error.kind),
+                    "the measured angles must show each motion that grows or persists, but do not "
+                    "show one"));
+    FAILS(NOT_EXCITED, "gain", acrobot_lqe_t, dlqe, &LASTING, &SILENT);
+    CHECK(same_text(acrobot_error_text(error.kind),
+                    "w must excite each motion that persists, but does not excite one"));
     REJECTED(OVERLAP, acrobot_tvlqr(&step_model, &ONES, &step_model.a, &gain, 1, &error));
     // NaN and infinite torques.
     FAILS(OUT_OF_RANGE, "theta1", float, plan_torque, &knot, 1, &feedback, 0, &INFINITE);
@@ -257,6 +270,6 @@ int main(void)
     CHECK(same_text(acrobot_status_text(ACROBOT_ERROR_OVERLAP), "two arguments overlap"));
     CHECK(same_text(acrobot_status_text(ACROBOT_ERROR_SHARED_PARAMS + 1), "unknown status"));
     CHECK(same_text(acrobot_error_text(-1), "unknown kind"));
-    CHECK(same_text(acrobot_error_text(ACROBOT_NO_PLAN + 1), "unknown kind"));
+    CHECK(same_text(acrobot_error_text(ACROBOT_NOT_EXCITED + 1), "unknown kind"));
     return report("rejections");
 }

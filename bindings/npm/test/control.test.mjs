@@ -4,8 +4,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-  Controller, Estimator, Planner, Replanner, SwingUp, deviationFrom, identify, planTorque,
-  regulator,
+  Controller, Estimator, Planner, Regression, Replanner, SwingUp, deviationFrom, dlqe, fitParams,
+  identify, planTorque, regulator,
 } from "../dist/control.js";
 import { Acrobot } from "../dist/index.js";
 import { assertRejected } from "./module.mjs";
@@ -77,6 +77,12 @@ test("invalid arguments are rejected with Rust's messages", () => {
   const hold = (q, r = 1, at = UPRIGHT, params = PARAMS) => () => regulator(params, q, r, at);
   const first = (...row) => [row, ...EYE.slice(1)];
   const settings = { params: PARAMS, limit: 6, counts: [4096, 4096], ticks: 5 };
+  const [regression, stdErrors] = [new Regression(), new Float64Array(10)];
+  const add = (dt, gravity = 9.8, half = 1, window = 1) => () =>
+    regression.add({ angles: [0, 0], torques: [0] }, dt, gravity, half, window);
+  const fit = regression.fit();
+  assert.equal(fit.rankDeficiency, 10);
+  const model = { a: EYE, b: [0, 0, 0, 0] };
   assertRejected([
     ["RangeError", "dt must be finite and above 0 s", ["-1", hold(EYE, 1, UPRIGHT, { dt: -1 })]],
     ["RangeError", "r must be finite and above 0 per (N m)²", ["-0.1", hold(EYE, -0.1)]],
@@ -114,6 +120,25 @@ test("invalid arguments are rejected with Rust's messages", () => {
       ["1", () => identify({ angles: [1], torques: [1] }, PARAMS)]],
     ["RangeError", "angles must be finite in each element",
       ["NaN", () => identify({ angles: [1, NaN], torques: [1] }, PARAMS)]],
+    ["RangeError", "dt must be finite and above 0 s", ["0", add(0)]],
+    ["TypeError", "gravity must be a number", ["null", add(0.01, null)]],
+    ["RangeError", "half must be an integer from 1 to 2^32 - 1", ["0", add(0.01, 9.8, 0)]],
+    ["RangeError", "window must be an integer from 1 to 2^32 - 1", ["1.5", add(0.01, 9.8, 1, 1.5)]],
+    ["RangeError", "torques must be finite in each element",
+      ["Infinity", () => regression.add({ angles: [0, 0], torques: [Infinity] }, 1, 1, 1, 1)]],
+    ["RangeError",
+      "mass11 must be determined by recordings in which both links move long enough, in kg m²",
+      ["0", () => fitParams(fit, PARAMS)]],
+    ["RangeError", "fit.values must have 10 elements",
+      ["1", () => fitParams({ ...fit, values: [1] }, PARAMS)]],
+    ["TypeError", "fit.stdErrors must be an array of 10 elements",
+      ["undefined", () => fitParams({ values: fit.values }, PARAMS)]],
+    ["RangeError", "length1 must be finite and above 0 m",
+      ["-1", () => fitParams({ values: [3, 1, 1, 1, 1, -1, 0, 0, 0, 0], stdErrors }, PARAMS)]],
+    ["RangeError", "s must be finite and above 0 rad²",
+      ["-2", () => dlqe(model, EYE, [1, -2])]],
+    ["RangeError", "w must be symmetric and positive semidefinite",
+      ["0.5", () => dlqe(model, first(1, 0.5, 0, 0), [1, 1])]],
     ["RangeError", "counts must be finite and above 0 for a turn",
       ["-4096", () => new Controller({ ...settings, counts: [4096, -4096] })]],
     ["RangeError", "count2 must be an integer of 32 bits",
@@ -130,6 +155,8 @@ test("invalid arguments are rejected with Rust's messages", () => {
   }
   const reach = "the torque must reach each motion that grows or persists, but does not reach one";
   rejects(hold(EYE, 1, UPRIGHT, { gravity: 0 }), reach);
+  const shown = /^the measured angles must show each motion that grows or persists, but do not/;
+  rejects(() => dlqe(model, EYE, [1, 1]), shown);
   planner.free();
   planner.free();
   const message = "the planner has been freed";
