@@ -40,6 +40,7 @@ use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{State, default_model, model};
 use crate::task::{Gymnasium, ResetBounds, Task};
 use buffers::{check_length, take_mut};
+use inputs::Inputs;
 use lane_params::Own;
 use settings::Settings;
 use storage::SlicesMut;
@@ -149,6 +150,17 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         inputs: &[I],
         buffers: StepBuffers<'_, T::Observation>,
     ) -> Result<(), Error> {
+        self.step_any(I::inputs(inputs), buffers)
+    }
+
+    // A module of WebAssembly has it once for actions and torques, which saves 15 KB.
+    #[cfg_attr(target_family = "wasm", inline(never))]
+    #[cfg_attr(target_os = "none", inline(always))]
+    fn step_any(
+        &mut self,
+        inputs: Inputs<'_, A::Scalar>,
+        buffers: StepBuffers<'_, T::Observation>,
+    ) -> Result<(), Error> {
         let level = self.simd_level;
         level.run(self.work(inputs, buffers)?);
         Ok(())
@@ -176,17 +188,16 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         buffers: StepBuffers<'_, T::Observation>,
     ) -> Result<(), Error> {
         let level = self.simd_level;
-        self.work(inputs, buffers)?.par_step(level);
+        self.work(I::inputs(inputs), buffers)?.par_step(level);
         Ok(())
     }
 
     /// Checks what a step reads and writes.
-    fn work<'a, I: Input<A::Scalar>>(
+    fn work<'a>(
         &'a mut self,
-        inputs: &'a [I],
+        inputs: Inputs<'a, A::Scalar>,
         buffers: StepBuffers<'a, T::Observation>,
     ) -> Result<Work<'a, A, T, N>, Error> {
-        let inputs = I::inputs(inputs);
         inputs.check(self.len())?;
         buffers.check(self.len())?;
         let slices = self.storage.slices_mut();

@@ -9,11 +9,11 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Damped, Portable, Real};
 use acrobot::batch::{Autoreset, VecBatch};
 use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
-use acrobot::control::identify::{Fit, Sample, identify};
+use acrobot::control::identify::{Fit, Regression, Sample, identify};
 use acrobot::control::model::{Forces, LinearModel, StepModel};
 use acrobot::control::mpc::{Controller, Replanner, Settings};
 use acrobot::control::plan::{Knot, Planner, Problem, SwingUp};
-use acrobot::control::regulator::{Lqr, dlqr, lqr, tvlqr};
+use acrobot::control::regulator::{Lqe, Lqr, dlqe, dlqr, lqr, tvlqr};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::task::{AnyTask, Draw, Draws};
@@ -183,13 +183,18 @@ fn models<A: Arithmetic>(table: &mut Table) {
     let problem = Problem::balance::<A>(params, cast(LIMIT.into()), cast(1.0)).unwrap();
     let (target, torque) = (problem.target, problem.torque);
     let bent = Pendulum::<A>::new(params, target).unwrap();
+    let model = bent.linearize_step(torque).unwrap();
+    let variances = [0.25, 2.0];
+    let Lqe { gain, prior_covariance } = dlqe(&model, &q, variances.map(cast)).unwrap();
+    let noise = with(base(target, torque), "w", flat(&[q.as_flattened()]));
+    let noise = with(noise, "s", variances.to_vec());
+    table.add("dlqe", noise, flat(&[gain.as_flattened(), prior_covariance.as_flattened()]));
     let weights = with(base(target, torque), "q", flat(&[q.as_flattened()]));
     let weights = with(weights, "r", vec![R]);
     let result = |Lqr { gain, cost_to_go }| flat(&[&gain, cost_to_go.as_flattened()]);
     table.add("regulator", weights.clone(), result(bent.regulator(torque, &q, r).unwrap()));
     let continuous = bent.linearize(torque).unwrap();
     table.add("lqr", weights.clone(), result(lqr(&continuous, &q, r).unwrap()));
-    let model = bent.linearize_step(torque).unwrap();
     table.add("dlqr", weights.clone(), result(dlqr(&model, &q, r).unwrap()));
     let mut gains = [[cast(0.0); 4]; 3];
     let cost_to_go = tvlqr(&[model; 3], &q, r, &q, &mut gains).unwrap();
@@ -234,10 +239,10 @@ fn plans(table: &mut Table) {
     table.add("swing_up", given, torques.collect::<Vec<_>>());
 }
 
-/// What a machine does that nobody holds.
-fn motion(steps: usize) -> (Vec<[f32; 2]>, Vec<f32>) {
+/// What a machine does that nobody holds, with torques of up to 2 N m times `scale`.
+fn motion(steps: usize, scale: f32) -> (Vec<[f32; 2]>, Vec<f32>) {
     let mut machine = Pendulum::<Damped<Fast>>::new(MACHINE.cast(), MOVING.cast()).unwrap();
-    let torques: Vec<f32> = (0..steps).map(|step| torque(step / 3) / 4.0).collect();
+    let torques: Vec<f32> = (0..steps).map(|step| torque(step / 3) * scale).collect();
     let angles = torques.iter().map(|torque| {
         let State { theta1, theta2, .. } = machine.state();
         machine.step(*torque).unwrap();
@@ -252,7 +257,7 @@ fn estimates<A: Arithmetic>(table: &mut Table) {
     let noise = Noise { angle_std: cast(0.001), torque_std: cast(0.05) };
     let std = ParameterStd { mass2: cast(0.125), coulomb2: cast(0.03), ..ParameterStd::default() };
     let mut estimator = ParameterEstimator::<A>::new(MACHINE.cast(), std, noise).unwrap();
-    let (angles, torques) = motion(60);
+    let (angles, torques) = motion(60, 0.25);
     for (angles, torque) in angles.iter().zip(&torques) {
         estimator.correct(angles.map(cast)).unwrap();
         estimator.predict(cast(*torque)).unwrap();
@@ -269,20 +274,33 @@ fn estimates<A: Arithmetic>(table: &mut Table) {
     table.add("estimate", given, result);
 }
 
+/// Parameters of one recording, and by a regression of two. Python identifies those of the two.
 fn identification(table: &mut Table) {
-    let (angles, torques) = motion(400);
+    let (angles, torques) = motion(500, 1.0);
     let samples = angles.iter().zip(&torques).map(|(angles, torque)| Sample {
         angles: angles.map(f64::from),
         torques: [0.0, f64::from(*torque)],
     });
     let samples: Vec<Sample> = samples.collect();
-    let given: Params = MACHINE.cast::<f32>().cast(); // C has no others
-    let (params, Fit { values, std_errors, .. }) = identify(&[&samples], given).unwrap();
+    let (one, two) = samples.split_at(250);
+    let drawn: Params = MACHINE.cast::<f32>().cast(); // C has no others
+    let [half, window] = [3, 50];
+    let mut regression = Regression::EMPTY;
+    for samples in [one, two] {
+        regression.add(samples, drawn.dt, drawn.gravity, half, window).unwrap();
+    }
+    let (of_one, _) = identify(&[&samples], drawn).unwrap();
+    let (of_both, found) = identify(&[one, two], drawn).unwrap();
+    let fit = regression.fit();
+    let all = |fit: &Fit| [fit.values, fit.std_errors, fit.weakest].concat();
+    let identified = [all(&found), numbers(&of_both)].concat();
     let given = json!({
-        "params": numbers(&given), "angles": flat(&[angles.as_flattened()]), "torques": torques,
-        "values": values, "std_errors": std_errors,
+        "params": numbers(&drawn), "angles": flat(&[angles.as_flattened()]), "torques": torques,
+        "first": one.len(), "half": half, "window": window, "fit": all(&fit),
+        "identified": identified,
     });
-    table.add("identify", given, numbers(&params));
+    let results = [of_one, fit.params(drawn).unwrap()].map(|params| numbers(&params.cast::<f32>()));
+    table.add("identify", given, results.concat());
 }
 
 /// From encoder counts to torques.

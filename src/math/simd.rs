@@ -67,10 +67,9 @@ impl SimdLevel {
 
     /// Runs a kernel, with the baseline if the machine does not have this level.
     #[allow(unsafe_code, reason = "the one place with instructions that the build does not assume")]
-    // Inlined in firmware, so that what it does not use of a kernel is omitted. A module of
-    // WebAssembly would have a kernel twice, for actions and for torques, and 17 KB more.
-    #[cfg_attr(target_family = "wasm", inline(never))]
-    #[cfg_attr(target_os = "none", inline(always))]
+    // Inlined in firmware, so that what it does not use of a kernel is omitted, and in WebAssembly,
+    // where a step of a batch takes 14 % longer otherwise.
+    #[cfg_attr(any(target_os = "none", target_family = "wasm"), inline(always))]
     pub(crate) fn run<K: Kernel>(self, kernel: K) {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         {

@@ -33,6 +33,8 @@ const _: () = {
     has::<acrobot_step_model_t>(offset_of!(acrobot_step_model_t, b), 64, 80);
     has::<acrobot_weights_t>(offset_of!(acrobot_weights_t, r), 64, 68);
     has::<acrobot_lqr_t>(offset_of!(acrobot_lqr_t, cost_to_go), 16, 80);
+    has::<acrobot_covariances_t>(offset_of!(acrobot_covariances_t, s), 64, 72);
+    has::<acrobot_lqe_t>(offset_of!(acrobot_lqe_t, prior_covariance), 32, 96);
     has::<acrobot_cost_t>(offset_of!(acrobot_cost_t, arrival), 160, 164);
     has::<acrobot_problem_t>(offset_of!(acrobot_problem_t, cost), 112, 276);
     has::<acrobot_knot_t>(offset_of!(acrobot_knot_t, workspace), 36, 44);

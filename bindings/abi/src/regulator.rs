@@ -1,7 +1,7 @@
-//! Linear-quadratic regulators.
+//! Linear-quadratic regulators, and Kalman filters.
 
 use acrobot::control::model::{LinearModel, StepModel};
-use acrobot::control::regulator::{self, Lqr};
+use acrobot::control::regulator::{self, Lqe, Lqr};
 
 use crate::data::{acrobot_params_t, acrobot_state_t};
 use crate::memory::{Span, array, check, check_apart, read};
@@ -104,5 +104,41 @@ pub unsafe extern "C" fn acrobot_tvlqr(
         check_apart(&[Span::of(models), Span::of(gains), Span::new(cost_to_go, 1)])?;
         let acrobot_weights_t { q, r } = read(weights)?;
         Ok(regulator::tvlqr(&*models, &q, r, &*cost_to_go, &mut *gains)?)
+    })
+}
+
+/// The noise of a model of steps whose angles are measured.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_covariances_t {
+    /// W, that of the noise that each step adds to x, by rows, rad², rad²/s and rad²/s²: symmetric
+    /// and positive semidefinite.
+    pub w: [[f32; 4]; 4],
+    /// The variances of both measurements, rad²; above 0.
+    pub s: [f32; 2],
+}
+
+/// A steady-state Kalman filter.
+#[repr(C)]
+pub struct acrobot_lqe_t {
+    /// L by rows: the correction of x by L (y − [x1, x2]) for the measured angles y.
+    pub gain: [[f32; 2]; 4],
+    /// P by rows: the covariance of the errors before the correction.
+    pub prior_covariance: [[f32; 4]; 4],
+}
+
+/// The Kalman filter of a model of steps: the least variances of its errors after many steps.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_dlqe(
+    model: *const acrobot_step_model_t,
+    covariances: *const acrobot_covariances_t,
+    lqe: *mut acrobot_lqe_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    compute(lqe, error, || {
+        let acrobot_step_model_t { a, b } = read(model)?;
+        let acrobot_covariances_t { w, s } = read(covariances)?;
+        let Lqe { gain, prior_covariance } = regulator::dlqe(&StepModel { a, b }, &w, s)?;
+        Ok(acrobot_lqe_t { gain, prior_covariance })
     })
 }

@@ -53,6 +53,10 @@ pub enum acrobot_error_kind_t {
     ACROBOT_ILL_CONDITIONED = 7,
     /// So many tries find no plan.
     ACROBOT_NO_PLAN = 8,
+    /// The measured angles do not show a motion that grows or persists.
+    ACROBOT_NOT_OBSERVABLE = 9,
+    /// The noise does not excite a motion that persists.
+    ACROBOT_NOT_EXCITED = 10,
 }
 
 use acrobot_error_kind_t::*;
@@ -122,12 +126,7 @@ impl From<Error> for Rejected {
             |kind, name, value, rule| Self { kind, ..Self::number(name, value, "", rule) };
         // Few rules, because each firmware contains their texts.
         let no_gain = |kind, value| {
-            of_kind(
-                kind,
-                "gain",
-                value,
-                "finite; target, dt, gravity and weights allow no regulator",
-            )
+            of_kind(kind, "gain", value, "finite; target, dt, gravity, weights or noise allow none")
         };
         let matrix =
             |kind, name, value| of_kind(kind, name, value, "symmetric and positive semidefinite");
@@ -151,6 +150,8 @@ impl From<Error> for Rejected {
             }
             Error::NotStabilizable => no_gain(ACROBOT_NOT_STABILIZABLE, f64::NAN),
             Error::NotDetectable => no_gain(ACROBOT_NOT_DETECTABLE, f64::NAN),
+            Error::NotObservable => no_gain(ACROBOT_NOT_OBSERVABLE, f64::NAN),
+            Error::NotExcited => no_gain(ACROBOT_NOT_EXCITED, f64::NAN),
             Error::IllConditioned { error } => no_gain(ACROBOT_ILL_CONDITIONED, error),
             _ => no_gain(ACROBOT_OUT_OF_RANGE, f64::NAN),
         }
@@ -199,11 +200,13 @@ pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
 }
 
 /// What Rust's `Error::message` says of the `kind` of an error. It is constant: do not free it.
+// Other kinds than 0 are those of control.
+#[cfg(feature = "control")]
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_error_text(kind: c_int) -> *const c_char {
     const X: f64 = 0.0;
     // In the order of acrobot_error_kind_t.
-    static TEXTS: [[c_char; 96]; 9] = [
+    static TEXTS: [[c_char; 96]; 11] = [
         constant(Error::OutOfRange { name: "", value: X, unit: "", rule: "" }),
         constant(Error::NotFinite { name: "", value: X }),
         constant(Error::NotSymmetric { name: "", upper: X, lower: X }),
@@ -213,12 +216,15 @@ pub extern "C" fn acrobot_error_text(kind: c_int) -> *const c_char {
         constant(Error::NotDetectable),
         constant(Error::IllConditioned { error: X }),
         constant(Error::NoPlan { tries: 0 }),
+        constant(Error::NotObservable),
+        constant(Error::NotExcited),
     ];
     let index = usize::try_from(kind).unwrap_or(usize::MAX);
     TEXTS.get(index).map_or(c"unknown kind".as_ptr(), |text| text.as_ptr())
 }
 
 /// The message of an error, and zero bytes.
+#[cfg(feature = "control")]
 const fn constant(error: Error) -> [c_char; 96] {
     let (message, mut text, mut i) = (error.message().as_bytes(), [0; 96], 0);
     while i < message.len() {

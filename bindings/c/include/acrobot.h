@@ -186,6 +186,10 @@ typedef enum {
   ACROBOT_ILL_CONDITIONED = 7,
   // So many tries find no plan.
   ACROBOT_NO_PLAN = 8,
+  // The measured angles do not show a motion that grows or persists.
+  ACROBOT_NOT_OBSERVABLE = 9,
+  // The noise does not excite a motion that persists.
+  ACROBOT_NOT_EXCITED = 10,
 } acrobot_error_kind_t;
 
 // Acrobots in the memory of acrobot_batch_init. It contains pointers into this memory, so do not
@@ -391,6 +395,23 @@ typedef struct {
   // P by rows: xᵀ P x is the cost from x on.
   float cost_to_go[4][4];
 } acrobot_lqr_t;
+
+// The noise of a model of steps whose angles are measured.
+typedef struct {
+  // W, that of the noise that each step adds to x, by rows, rad², rad²/s and rad²/s²: symmetric
+  // and positive semidefinite.
+  float w[4][4];
+  // The variances of both measurements, rad²; above 0.
+  float s[2];
+} acrobot_covariances_t;
+
+// A steady-state Kalman filter.
+typedef struct {
+  // L by rows: the correction of x by L (y − [x1, x2]) for the measured angles y.
+  float gain[4][2];
+  // P by rows: the covariance of the errors before the correction.
+  float prior_covariance[4][4];
+} acrobot_lqe_t;
 
 // The weights of what a plan costs, 0 or more: a larger one makes its term smaller. The defaults
 // are those of acrobot_problem_init: u is the largest torque, and T² the inertia of the straight
@@ -730,6 +751,10 @@ acrobot_status_t acrobot_dlqr(const acrobot_step_model_t *model, const acrobot_w
 // gains.
 acrobot_status_t acrobot_tvlqr(const acrobot_step_model_t *models, const acrobot_weights_t *weights,
     float (*cost_to_go)[4][4], acrobot_state_t *gains, size_t count, acrobot_error_t *error);
+
+// The Kalman filter of a model of steps: the least variances of its errors after many steps.
+acrobot_status_t acrobot_dlqe(const acrobot_step_model_t *model,
+    const acrobot_covariances_t *covariances, acrobot_lqe_t *lqe, acrobot_error_t *error);
 
 // The problem to stand with an `elbow` angle, rad, for a largest torque, N m: 0 is a swing-up. It
 // has the default weights, which follow from the size of the machine. Then you may change them.

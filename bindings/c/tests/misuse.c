@@ -214,6 +214,7 @@ int main(void)
     *a_count = COUNT;
     *a_weights = weights;
     *a_noise = noise;
+    a_covariances->s[0] = a_covariances->s[1] = 1;
     a_state->theta1 = 3.1415927f;
     ACCEPTED(acrobot_task_params(ACROBOT_TASK_GYMNASIUM, a_params, NULL));
     const acrobot_settings_t settings = {*a_params, 6, {4096, 1024}, 5};

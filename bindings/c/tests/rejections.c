@@ -12,6 +12,10 @@ static const acrobot_state_t REST = {0, 0, 0, 0}, MOVING = {0, 0, 1, 0}, FASTEST
                              BACK = {0, 0, 0, -3e38f};
 static const acrobot_weights_t ONES = {ONE_BY_ONE, 1}, ZEROS = {{{0}}, 1}, FREE = {ONE_BY_ONE, 0},
                                UNEVEN = {{{1, 2}, {0, 1}}, 1}, NEGATIVE = {{{-1}}, 1};
+static const acrobot_covariances_t EVEN = {ONE_BY_ONE, {1, 1}}, SILENT = {{{0}}, {1, 1}},
+                                   EXACT = {ONE_BY_ONE, {1, 0}};
+static const acrobot_step_model_t GROWING = {{{0}, {0}, {0, 0, 2}}, {0}},
+                                  LASTING = {{{1}}, {0}};
 
 #define params_rejects(message, set) \
     params = GOOD; \
@@ -94,7 +98,7 @@ static void of_a_batch(void)
 // Each kind of error, as a regulator reports it.
 static void of_each_kind(void)
 {
-#define NO_REGULATOR "gain must be finite; target, dt, gravity and weights allow no regulator, got "
+#define NO_REGULATOR "gain must be finite; target, dt, gravity, weights or noise allow none, got "
 #define SEMIDEFINITE "q must be symmetric and positive semidefinite, got "
     static const struct {
         int kind;
@@ -126,6 +130,16 @@ static void of_each_kind(void)
     CHECK(error.kind == ACROBOT_NOT_DETECTABLE);
     CHECK(same_text(acrobot_error_text(error.kind),
                     "q must weight each motion that persists, but does not weight one"));
+    acrobot_lqe_t lqe;
+    acrobot_step_model_t step_model;
+    ACCEPTED(acrobot_linearize_step(&GOOD, &REST, 0, &step_model, NULL));
+    expect_message(acrobot_dlqe(&step_model, &EXACT, &lqe, &error),
+                   "s must be finite and above 0 rad², got ");
+    // No angle shows a velocity.
+    expect_message(acrobot_dlqe(&GROWING, &EVEN, &lqe, &error), NO_REGULATOR);
+    CHECK(error.kind == ACROBOT_NOT_OBSERVABLE);
+    expect_message(acrobot_dlqe(&LASTING, &SILENT, &lqe, &error), NO_REGULATOR);
+    CHECK(error.kind == ACROBOT_NOT_EXCITED);
 }
 
 // Finite numbers whose result is not.
@@ -164,6 +178,6 @@ int main(void)
     CHECK(same_text(acrobot_status_text(ACROBOT_ERROR_OVERLAP), "two arguments overlap"));
     CHECK(same_text(acrobot_status_text(ACROBOT_ERROR_SHARED_PARAMS + 1), "unknown status"));
     CHECK(same_text(acrobot_error_text(-1), "unknown kind"));
-    CHECK(same_text(acrobot_error_text(ACROBOT_NO_PLAN + 1), "unknown kind"));
+    CHECK(same_text(acrobot_error_text(ACROBOT_NOT_EXCITED + 1), "unknown kind"));
     return report("rejections");
 }

@@ -5,6 +5,13 @@
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define KNOTS 80
 #define ACROBOTS 5
+#define SAMPLES 500
+
+// What a board with 64 KB has room for once.
+static union {
+    acrobot_knot_t knots[2][KNOTS];
+    acrobot_sample_t samples[SAMPLES];
+} shared;
 
 // The results of the call that have not been compared yet.
 static const double *expected, *expected_end;
@@ -222,6 +229,15 @@ static acrobot_weights_t weights_of(const double *q, const double *r)
     COMPARE(gains); \
     COMPARE(cost_to_go)
 
+#define dlqe() \
+    acrobot_covariances_t noise; \
+    acrobot_lqe_t lqe; \
+    to_floats(noise.w, w, 16); \
+    to_floats(noise.s, s, 2); \
+    GET(acrobot_step_model_t, acrobot_linearize_step, (float)torque); \
+    ACCEPTED(acrobot_dlqe(&found, &noise, &lqe, NULL)); \
+    COMPARE(lqe)
+
 static void compare_knots(const acrobot_knot_t *knots, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -234,7 +250,7 @@ static void compare_knots(const acrobot_knot_t *knots, size_t count)
 #define plan() \
     static const acrobot_state_t HANGING = {0, 0, 0, 0}, UPRIGHT = {3.1415927f, 0, 0, 0}; \
     static const size_t STEPS[] = {0, 2, KNOTS}; \
-    static acrobot_knot_t knots[KNOTS], better[KNOTS]; \
+    acrobot_knot_t *const knots = shared.knots[0], *const better = shared.knots[1]; \
     const acrobot_params_t machine_ = machine(params); \
     const acrobot_state_t start_ = state_of(start); \
     acrobot_problem_t problem; \
@@ -292,23 +308,33 @@ static void compare_knots(const acrobot_knot_t *knots, size_t count)
     ACCEPTED(acrobot_parameter_estimator_params(&filter, &estimated)); \
     COMPARE_PARAMS(estimated)
 
-// The parameters that Rust identifies are double.
+#define ADD(samples, count) \
+    ACCEPTED(acrobot_regression_add(&regression, samples, count, (double)drawn.dt, \
+                                    (double)drawn.gravity, (size_t)half, (size_t)window, NULL))
 #define identify() \
-    static acrobot_sample_t samples[COUNT(torques)]; \
-    const acrobot_params_t given = machine(params); \
+    acrobot_sample_t *const samples = shared.samples; \
+    const acrobot_params_t drawn = machine(params); \
+    const size_t count = (size_t)first; \
     acrobot_params_t found; \
-    (void)values, (void)std_errors; \
-    for (size_t i = 0; i < COUNT(torques); i++) { \
+    acrobot_regression_t regression; \
+    acrobot_fit_t found_fit; \
+    (void)identified; \
+    CHECK(COUNT(torques) == SAMPLES); \
+    for (size_t i = 0; i < SAMPLES; i++) { \
         samples[i].angles[0] = angles[2 * i]; \
         samples[i].angles[1] = angles[2 * i + 1]; \
+        samples[i].torques[0] = 0; \
         samples[i].torques[1] = torques[i]; \
     } \
-    ACCEPTED(acrobot_identify(samples, COUNT(samples), &given, &found, NULL)); \
-    for (size_t i = 0; i < 21; i++) { \
-        float number; \
-        __builtin_memcpy(&number, (const float *)(const void *)&found + i, sizeof number); \
-        CHECK(number == (float)*expected++); \
-    }
+    ACCEPTED(acrobot_identify(samples, SAMPLES, &drawn, &found, NULL)); \
+    COMPARE_PARAMS(found); \
+    ACCEPTED(acrobot_regression_init(&regression)); \
+    ADD(samples, count); \
+    ADD(samples + count, SAMPLES - count); \
+    ACCEPTED(acrobot_regression_fit(&regression, &found_fit)); \
+    CHECK(same(&found_fit, fit, sizeof fit) && found_fit.rank_deficiency == 0); \
+    ACCEPTED(acrobot_fit_params(&found_fit, &drawn, &found, NULL)); \
+    COMPARE_PARAMS(found)
 
 #define control() \
     const acrobot_settings_t settings = { \

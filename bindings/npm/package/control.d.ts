@@ -102,6 +102,23 @@ export function tvlqr(
   models: ArrayLike<Readonly<StepModel>>, q: Matrix, r: number, costToGo: Matrix,
 ): { gains: Float32Array[]; costToGo: Float32Array[] };
 
+/** A steady-state Kalman filter. */
+export interface Filtering {
+  /** L by rows, of two: the correction of x by L (y − [x1, x2]) for the measured angles y. */
+  gain: Float32Array[];
+  /** P by rows: the covariance of the errors before the correction. */
+  priorCovariance: Float32Array[];
+}
+
+/**
+ * The Kalman filter of a model of steps whose angles are measured: the least variances of its
+ * errors after many steps. `w` is the covariance of the noise that each step adds to x, and `s` are
+ * the variances of both measurements, rad².
+ */
+export function dlqe(
+  model: Readonly<StepModel>, w: Matrix, s: readonly [number, number],
+): Filtering;
+
 /**
  * What a plan costs. A larger weight, of at least 0, makes its term smaller. Defaults follow from
  * the machine: T² is the inertia of the straight machine about the fixed joint, divided by the sum
@@ -288,6 +305,47 @@ export interface Recording {
   /** The motor's torque from each sample to the next, N m. */
   torques: ArrayLike<number>;
 }
+
+/** What fits recordings. */
+export interface Fit {
+  /**
+   * The elements of the mass matrix where θ2 is ±π/2, [1, 1], [1, 2] and [2, 2], kg m²; the moments
+   * m1 lc1 + m2 l1 and m2 lc2, kg m; the coupling m2 l1 lc2, kg m²; viscous friction of both
+   * joints, N m s/rad; their Coulomb friction, N m.
+   */
+  values: Float64Array;
+  /** Their standard errors; Infinity for a number that the recordings do not determine. */
+  stdErrors: Float64Array;
+  /** The combination that they determine least: the part of each number. */
+  weakest: Float64Array;
+  /** How many combinations they do not determine. */
+  rankDeficiency: number;
+}
+
+/** A regression of recordings, which it does not keep. */
+export class Regression extends Kept {
+  /** No recording. */
+  constructor();
+  /**
+   * Adds a recording with a sample in each `dt`, s, of a machine under `gravity`, m/s². A velocity
+   * is that of a parabola through 2 `half` + 1 angles, and a window has so many samples; the next
+   * one begins in its middle. A recording that is too short adds nothing.
+   */
+  add(
+    recording: Readonly<Recording>, dt: number, gravity: number, half: number, window: number,
+  ): void;
+  /** The numbers that fit the recordings best. */
+  fit(): Fit;
+}
+
+/**
+ * The parameters of a fit: the given ones with the length of link 1, masses, inertias, rotor and
+ * friction that move as the machine does. Throws if no machine has these numbers, or the recordings
+ * do not determine one that is not a friction.
+ */
+export function fitParams(
+  fit: Readonly<Fit>, params: Readonly<Partial<Params>>,
+): Readonly<Params>;
 
 /** The parameters of a machine whose lengths and `dt` are given. */
 export function identify(

@@ -83,6 +83,10 @@ const DAMAGES = {
   [STATUS.otherSnapshot]: "another class or version, or invalid contents",
 };
 const ERROR_SIZE = padded(4 * (ERROR.rule[0] + ERROR.rule[1]));
+/** The errors without a number. */
+const WITHOUT = [
+  KINDS.notStabilizable, KINDS.notDetectable, KINDS.notObservable, KINDS.notExcited,
+];
 /** JavaScript's names of arguments that have others in Rust. */
 const NAMES = { "the largest torque": "limit" };
 
@@ -101,9 +105,7 @@ function rejection(status, at, given) {
   const [kind] = new Int32Array(buffer, at + 4 * ERROR.kind[0], 1);
   const [name, rule] = [ERROR.name, ERROR.rule].map(([word]) => text(at + 4 * word));
   if (kind === KINDS.noPlan) return undefined;
-  if (kind === KINDS.notStabilizable || kind === KINDS.notDetectable) {
-    return new RangeError(text(wasm().acrobot_error_text(kind)));
-  }
+  if (WITHOUT.includes(kind)) return new RangeError(text(wasm().acrobot_error_text(kind)));
   const own = NAMES[name] ?? camelCase(name);
   // The number before it was rounded.
   const isGiven = (number) => Object.is(Math.fround(number), Math.fround(value));

@@ -8,7 +8,8 @@ export const STATUS = {
 };
 export const KINDS = {
   outOfRange: 0, notFinite: 1, notSymmetric: 2, notSemidefinite: 3, notInEquilibrium: 4,
-  notStabilizable: 5, notDetectable: 6, illConditioned: 7, noPlan: 8,
+  notStabilizable: 5, notDetectable: 6, illConditioned: 7, noPlan: 8, notObservable: 9,
+  notExcited: 10,
 };
 
 /** Bytes. */
@@ -53,6 +54,12 @@ export const STRUCTS = {
   acrobot_lqr_t: {
     gain: [0, 4], costToGo: [4, 16],
   },
+  acrobot_covariances_t: {
+    w: [0, 16], s: [16, 2],
+  },
+  acrobot_lqe_t: {
+    gain: [0, 8], priorCovariance: [8, 16],
+  },
   acrobot_cost_t: {
     q: [0, 16], qf: [16, 16], angles: [32, 2], torque: [34, 1], torqueChange: [35, 1],
     power: [36, 1], below: [37, 1], height: [38, 1], margin: [39, 1], arrival: [40, 1],
@@ -72,6 +79,9 @@ export const STRUCTS = {
   acrobot_parameter_std_t: {
     mass1: [0, 1], mass2: [1, 1], length1: [2, 1], inertia1: [3, 1], inertia2: [4, 1],
     damping1: [5, 1], damping2: [6, 1], coulomb1: [7, 1], coulomb2: [8, 1], rotor: [9, 1],
+  },
+  acrobot_fit_t: {
+    values: [0, 20], stdErrors: [20, 20], weakest: [40, 20], rankDeficiency: [60, 1],
   },
   acrobot_settings_t: {
     params: [0, 22], limit: [22, 1], counts: [23, 2], ticks: [25, 1],

@@ -4,7 +4,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-  Controller, Estimator, Planner, Replanner, deviationFrom, identify, planTorque, regulator,
+  Controller, Estimator, Planner, Regression, Replanner, deviationFrom, dlqe, fitParams, identify,
+  planTorque, regulator,
 } from "../dist/control.js";
 import { assertRejected } from "./module.mjs";
 
@@ -64,6 +65,12 @@ test("invalid arguments are rejected with Rust's messages", () => {
   const make = (limit, cost) => () => new Planner(PARAMS, limit, cost);
   const hold = (q, params = PARAMS) => () => regulator(params, q, 1, UPRIGHT);
   const settings = { ...SETTINGS, ticks: 5 };
+  const [regression, stdErrors] = [new Regression(), new Float64Array(10)];
+  const add = (dt, gravity = 9.8, half = 1, window = 1) => () =>
+    regression.add({ angles: [0, 0], torques: [0] }, dt, gravity, half, window);
+  const fit = regression.fit();
+  assert.equal(fit.rankDeficiency, 10);
+  const model = { a: EYE, b: [0, 0, 0, 0] };
   assertRejected([
     ["RangeError", "dt must be finite and above 0 s", ["-1", hold(EYE, { dt: -1 })]],
     ["TypeError", "q[0][1] must be a number",
@@ -94,6 +101,25 @@ test("invalid arguments are rejected with Rust's messages", () => {
       ["1", () => identify({ angles: [1], torques: [1] }, PARAMS)]],
     ["RangeError", "angles must be finite in each element",
       ["NaN", () => identify({ angles: [1, NaN], torques: [1] }, PARAMS)]],
+    ["RangeError", "dt must be finite and above 0 s", ["0", add(0)]],
+    ["TypeError", "gravity must be a number", ["null", add(0.01, null)]],
+    ["RangeError", "half must be an integer from 1 to 2^32 - 1", ["0", add(0.01, 9.8, 0)]],
+    ["RangeError", "window must be an integer from 1 to 2^32 - 1", ["1.5", add(0.01, 9.8, 1, 1.5)]],
+    ["RangeError", "torques must be finite in each element",
+      ["Infinity", () => regression.add({ angles: [0, 0], torques: [Infinity] }, 1, 1, 1, 1)]],
+    ["RangeError",
+      "mass11 must be determined by recordings in which both links move long enough, in kg m²",
+      ["0", () => fitParams(fit, PARAMS)]],
+    ["RangeError", "fit.values must have 10 elements",
+      ["1", () => fitParams({ ...fit, values: [1] }, PARAMS)]],
+    ["TypeError", "fit.stdErrors must be an array of 10 elements",
+      ["undefined", () => fitParams({ values: fit.values }, PARAMS)]],
+    ["RangeError", "length1 must be finite and above 0 m",
+      ["-1", () => fitParams({ values: [3, 1, 1, 1, 1, -1, 0, 0, 0, 0], stdErrors }, PARAMS)]],
+    ["RangeError", "s must be finite and above 0 rad²",
+      ["-2", () => dlqe(model, EYE, [1, -2])]],
+    ["RangeError", "w must be symmetric and positive semidefinite",
+      ["0.5", () => dlqe(model, [[1, 0.5, 0, 0], ...EYE.slice(1)], [1, 1])]],
     ["RangeError", "counts must be finite and above 0 for a turn",
       ["-4096", () => new Controller({ ...settings, counts: [4096, -4096] })]],
     ["RangeError", "count2 must be an integer of 32 bits",
@@ -101,8 +127,9 @@ test("invalid arguments are rejected with Rust's messages", () => {
     ["TypeError", "controller must be a Controller",
       ["[object Planner]", () => new Replanner(settings).exchange(planner)]],
   ]);
-  const message = /^the torque must reach each motion that grows or persists, but does not reach/;
-  assert.throws(hold(EYE, { gravity: 0 }), { name: "RangeError", message });
+  const rejects = (call, message) => assert.throws(call, { name: "RangeError", message });
+  rejects(hold(EYE, { gravity: 0 }), /^the torque must reach each motion that grows/);
+  rejects(() => dlqe(model, EYE, [1, 1]), /^the measured angles must show each motion/);
   planner.free();
   planner.free();
   const freed = { name: "Error", message: "the planner has been freed" };

@@ -89,6 +89,11 @@ const CALLS = {
     gains(control.lqr(control.linearize(target, torque, of), q, r))),
   dlqr: regulatorOf(({ of, target, torque, q, r }) =>
     gains(control.dlqr(control.linearizeStep(target, torque, of), q, r))),
+  dlqe: modelOf((state, torque, params, { w, s }) => {
+    const model = control.linearizeStep(state, torque, params);
+    const { gain, priorCovariance } = control.dlqe(model, matrix(w), s);
+    return flat(gain, priorCovariance);
+  }),
   tvlqr: regulatorOf(({ of, target, torque, q, r }) => {
     const model = control.linearizeStep(target, torque, of);
     const along = control.tvlqr([model, model, model], q, r, q);
@@ -118,8 +123,17 @@ const CALLS = {
     });
     return [estimator.state, estimator.stateStd, estimator.params].flatMap(numbersOf);
   },
-  identify: ({ params, angles, torques }) =>
-    numbersOf(control.identify({ angles, torques }, machine(params))),
+  identify({ params, angles, torques, first, half, window, fit }) {
+    const [drawn, regression] = [machine(params), new control.Regression()];
+    const found = control.identify({ angles, torques }, drawn);
+    for (const [from, to] of [[0, first], [first, torques.length]]) {
+      const part = { angles: angles.slice(2 * from, 2 * to), torques: torques.slice(from, to) };
+      regression.add(part, drawn.dt, drawn.gravity, half, window);
+    }
+    const { rankDeficiency, ...arrays } = regression.fit();
+    assert.deepEqual([flat(...Object.values(arrays)), rankDeficiency], [fit, 0]);
+    return [found, control.fitParams(regression.fit(), drawn)].flatMap(numbersOf);
+  },
   control({ params, limit, per_turn: counts, ticks, every, counts: measured }) {
     const settings = { params: machine(params), limit, counts, ticks };
     const controller = new control.Controller(settings);

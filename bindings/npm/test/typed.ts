@@ -4,7 +4,8 @@
 import { Acrobot, Batch, moduleBytes, setModule } from "acrobot-rs";
 import type { Action, BatchStep, Context, Options, Params, State, Step, Task } from "acrobot-rs";
 import {
-  Controller, ParameterEstimator, Planner, Replanner, SwingUp, dlqr, linearizeStep, planTorque,
+  Controller, ParameterEstimator, Planner, Regression, Replanner, SwingUp, dlqe, dlqr, fitParams,
+  linearizeStep, planTorque,
 } from "acrobot-rs/control";
 import type { Plan } from "acrobot-rs/control";
 import { Learner, energyLaw } from "acrobot-rs/policies";
@@ -33,6 +34,10 @@ const plan: Plan | null = planner.plan(state, { steps: 500, seed: 7n });
 const torque: number = plan ? planTorque(plan, 0, state) : new SwingUp(params, 2).torque(state);
 const eye = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
 const gain: Float32Array = dlqr(linearizeStep(state, 0, { dt: 0.05 }), eye, 1).gain;
+const filter: Float32Array[] = dlqe(linearizeStep(state, 0, { dt: 0.05 }), eye, [1, 1]).gain;
+const regression = new Regression();
+regression.add({ angles: [0, 0], torques: [0] }, 0.05, 9.8, 2, 25);
+const fitted: () => Readonly<Params> = () => fitParams(regression.fit(), params);
 const noise = { angleStd: 0.001, torqueStd: 0.01 };
 using estimator = new ParameterEstimator(params, { mass2: 0.1 }, noise);
 const estimated: Readonly<State> = estimator.state;
@@ -63,4 +68,4 @@ new Batch({ seed: 1 });
 // @ts-expect-error
 planTorque(planner.plan(state, { steps: 500 }), 0, state);
 
-export { actions, estimated, finals, gain, mode, step, task, torque };
+export { actions, estimated, filter, finals, fitted, gain, mode, step, task, torque };

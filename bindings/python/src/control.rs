@@ -3,7 +3,7 @@
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::control::model::{LinearModel, StepModel};
 use acrobot::control::plan::{self, Cost, Knot, Plan, Problem};
-use acrobot::control::regulator::{self, Feedback, Lqr, dlqr, lqr, tvlqr};
+use acrobot::control::regulator::{self, Feedback, Lqe, Lqr, dlqe, dlqr, lqr, tvlqr};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::{Error, Fast, Portable, State};
@@ -32,8 +32,8 @@ pub fn compute<'py>(
                 "simulate" => simulate(one.clone(), row)?,
                 _ => {
                     results_of(function, one.params(), row).map_err(|error| match error.name() {
-                        "q" => named(error, "Q"), // as in python-control
-                        "r" => named(error, "R"),
+                        // As in python-control.
+                        name @ ("q" | "r" | "w" | "s") => named(error, name.to_uppercase()),
                         _ => rejected(error),
                     })?
                 }
@@ -85,6 +85,11 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, E
         ("dlqr", &[a1, a2, a3, a4, b, q1, q2, q3, q4], &[r]) => {
             let model = StepModel { a: [a1, a2, a3, a4], b };
             of_regulator(dlqr(&model, &[q1, q2, q3, q4], r)?)
+        }
+        ("dlqe", &[a1, a2, a3, a4, w1, w2, w3, w4], &[s1, s2]) => {
+            let model = StepModel { a: [a1, a2, a3, a4], b: [0.0; 4] };
+            let Lqe { gain, prior_covariance } = dlqe(&model, &[w1, w2, w3, w4], [s1, s2])?;
+            [gain.concat(), prior_covariance.concat()].concat()
         }
         ("lqr", &[a1, a2, a3, a4, b, q1, q2, q3, q4], &[r]) => {
             let model = LinearModel { a: [a1, a2, a3, a4], b };

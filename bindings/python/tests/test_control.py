@@ -71,6 +71,7 @@ WEIGHTS = "torque", "torque_change", "power", "below", "height", "margin", "arri
 VALUES = dict.fromkeys((*WEIGHTS, "max_torque", "elbow"), 1.0) | NOISE | MODEL
 VALUES |= dict.fromkeys(("state", "target"), REST) | dict.fromkeys(("q", "qf", "Qf"), ONE)
 VALUES |= {"accelerations": [0.0] * 2, "torques": [1.0], "angles": [0.0] * 2, "env": ENV}
+VALUES |= {"W": ONE, "S": [1.0] * 2}
 VALUES |= {"step": 0, "steps": 9, "tries": 1, "seed": 0, "progress": print, "iterations": 1}
 VALUES |= {"plan": PLAN, "plans": [PLAN], "states": [REST]}
 VALUES |= {"velocity_clamp": True, "parameter_std": {}}

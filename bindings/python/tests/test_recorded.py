@@ -25,7 +25,7 @@ CRATES = [name.split("[")[0] for row in ROWS if row["call"] == "params" for name
 PYTHONS = [name for name in AcrobotEnv._NAMES if name not in ("LINK_MOI", "book_or_nips")]
 NAMES = dict(zip(dict.fromkeys(CRATES), PYTHONS, strict=True))
 COLUMNS = [name for name in PYTHONS for _ in range(3 if name == "AVAIL_TORQUE" else 1)]
-#: Python has neither single acrobots in float32 nor the controller for microcontrollers.
+#: Python has neither single acrobots in float32 nor what microcontrollers need.
 RESULTS = [row for row in RESULTS if row.get("arithmetic") != "fast"]
 RESULTS = [row for row in RESULTS if row["call"] not in ("episode", "control")]
 
@@ -66,6 +66,9 @@ def batch(row, env):
 
 def model(row, env):
     function, values = getattr(control, row["call"]), row | {"env": env}
+    if "w" in row:
+        A, _ = control.linearize_step(row["state"], row["torque"], env)
+        return flat(*function(A, np.reshape(row["w"], (4, 4)), row["s"]))
     if "q" in row:
         Q = np.reshape(row["q"], (4, 4))
         linearize = control.linearize if row["call"] == "lqr" else control.linearize_step
@@ -104,10 +107,13 @@ def estimate(row, env):
 
 
 def identify(row, env):
-    found = control.identify([np.reshape(row["angles"], (-1, 2))], [row["torques"]], env)
-    assert [*found.values.values()] == row["values"]
-    assert [*found.std_errors.values()] == row["std_errors"]
-    return [*found.params.values()]
+    angles, torques = np.reshape(row["angles"], (-1, 2)), row["torques"]
+    first = row["first"]
+    angles, torques = ([each[:first], each[first:]] for each in (angles, torques))
+    found = control.identify(angles, torques, env)
+    parts = found.values, found.std_errors, found.weakest, found.params
+    row["result"] = row["identified"]
+    return flat(*([*part.values()] for part in parts))
 
 
 REPLAYS = {each.__name__: each for each in (batch, plan, swing_up, estimate, identify)}

@@ -75,6 +75,18 @@ def dlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
     return rows[..., :1, :], rows[..., 1:, :]
 
 
+def dlqe(A: ArrayLike, W: ArrayLike, S: ArrayLike) -> Pair:
+    """The steady-state Kalman filter of a model of one step whose angles are measured.
+
+    W is the covariance of the noise that a step adds to the state, and S, ``(..., 2)``, are the
+    variances of both measurements, rad². Returns L, ``(..., 4, 2)``, by which a measurement
+    corrects the state, and P, ``(..., 4, 4)``, the covariance of its errors before the correction.
+    python-control's L is A L.
+    """
+    rows = _call("dlqe", (6, 4), None, A=A, W=W, S=S)
+    return rows[..., :2, :].reshape(*rows.shape[:-2], 4, 2), rows[..., 2:, :]
+
+
 def tvlqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike, Qf: ArrayLike) -> Pair:
     """The linear-quadratic regulator of ``n`` steps, each with its own model.
 
@@ -109,6 +121,7 @@ _STATE = (4,), "finite numbers, rad and rad/s"
 _MATRIX = (4, 4), "finite numbers"
 _INPUTS = {
     **{"state": _STATE, "target": _STATE, "A": _MATRIX, "Q": _MATRIX, "Qf": _MATRIX},
+    **{"W": _MATRIX, "S": ((2,), "finite numbers of rad²")},
     **{"B": ((4, 1), "finite numbers"), "R": ((1, 1), "finite numbers")},
     **{"torque": ((), "a finite number of N m"), "torques": ((), "finite numbers of N m")},
     "accelerations": ((2,), "finite numbers of rad/s²"),
