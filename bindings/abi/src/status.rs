@@ -121,7 +121,23 @@ impl From<acrobot_status_t> for Rejected {
 }
 
 impl From<Error> for Rejected {
+    // In firmware a function has only the kinds that it needs; in WebAssembly all share one copy.
+    #[cfg_attr(not(target_family = "wasm"), inline(always))]
     fn from(error: Error) -> Self {
+        match error {
+            Error::OutOfRange { name, value, unit, rule } => Self::number(name, value, unit, rule),
+            Error::SharedParams => ACROBOT_ERROR_SHARED_PARAMS.into(),
+            Error::UnknownAction(_) => ACROBOT_ERROR_UNKNOWN_ACTION.into(),
+            Error::NoSuchIndex { .. } => ACROBOT_ERROR_NO_SUCH_INDEX.into(),
+            Error::EmptyBatch | Error::WrongLength { .. } => ACROBOT_ERROR_WRONG_COUNT.into(),
+            error => Self::of_kind(error),
+        }
+    }
+}
+
+impl Rejected {
+    #[inline(never)] // saves flash
+    fn of_kind(error: Error) -> Self {
         let of_kind =
             |kind, name, value, rule| Self { kind, ..Self::number(name, value, "", rule) };
         // Few rules, because each firmware contains their texts.
@@ -131,11 +147,6 @@ impl From<Error> for Rejected {
         let matrix =
             |kind, name, value| of_kind(kind, name, value, "symmetric and positive semidefinite");
         match error {
-            Error::OutOfRange { name, value, unit, rule } => Self::number(name, value, unit, rule),
-            Error::SharedParams => ACROBOT_ERROR_SHARED_PARAMS.into(),
-            Error::UnknownAction(_) => ACROBOT_ERROR_UNKNOWN_ACTION.into(),
-            Error::NoSuchIndex { .. } => ACROBOT_ERROR_NO_SUCH_INDEX.into(),
-            Error::EmptyBatch | Error::WrongLength { .. } => ACROBOT_ERROR_WRONG_COUNT.into(),
             Error::NotFinite { name, value } => {
                 of_kind(ACROBOT_NOT_FINITE, name, value, "finite in each element")
             }
@@ -206,7 +217,7 @@ pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
 pub extern "C" fn acrobot_error_text(kind: c_int) -> *const c_char {
     const X: f64 = 0.0;
     // In the order of acrobot_error_kind_t.
-    static TEXTS: [[c_char; 96]; 11] = [
+    static TEXTS: [[c_char; 88]; 11] = [
         constant(Error::OutOfRange { name: "", value: X, unit: "", rule: "" }),
         constant(Error::NotFinite { name: "", value: X }),
         constant(Error::NotSymmetric { name: "", upper: X, lower: X }),
@@ -225,8 +236,8 @@ pub extern "C" fn acrobot_error_text(kind: c_int) -> *const c_char {
 
 /// The message of an error, and zero bytes.
 #[cfg(feature = "control")]
-const fn constant(error: Error) -> [c_char; 96] {
-    let (message, mut text, mut i) = (error.message().as_bytes(), [0; 96], 0);
+const fn constant(error: Error) -> [c_char; 88] {
+    let (message, mut text, mut i) = (error.message().as_bytes(), [0; 88], 0);
     while i < message.len() {
         text[i] = message[i] as c_char;
         i += 1;
