@@ -11,7 +11,7 @@ use acrobot::batch::{Autoreset, VecBatch};
 use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
 use acrobot::control::identify::{Fit, Regression, Sample, identify};
 use acrobot::control::model::{Forces, LinearModel, StepModel};
-use acrobot::control::mpc::{Controller, Replanner, Settings};
+use acrobot::control::mpc::{Controller, Replanner, Report, Settings};
 use acrobot::control::plan::{Knot, Planner, Problem, SwingUp};
 use acrobot::control::regulator::{Lqe, Lqr, dlqe, dlqr, lqr, tvlqr};
 use acrobot::numpy::Pcg64;
@@ -255,7 +255,13 @@ fn motion(steps: usize, scale: f32) -> (Vec<[f32; 2]>, Vec<f32>) {
 fn estimates<A: Arithmetic>(table: &mut Table) {
     let cast = |x: f32| A::Scalar::from_f64(x.into());
     let noise = Noise { angle_std: cast(0.001), torque_std: cast(0.05) };
-    let std = ParameterStd { mass2: cast(0.125), coulomb2: cast(0.03), ..ParameterStd::default() };
+    let std = ParameterStd {
+        mass2: cast(0.125),
+        coulomb2: cast(0.03),
+        zero1: cast(0.25),
+        torque_factor: cast(0.0625),
+        ..ParameterStd::default()
+    };
     let mut estimator = ParameterEstimator::<A>::new(MACHINE.cast(), std, noise).unwrap();
     let (angles, torques) = motion(60, 0.25);
     for (angles, torque) in angles.iter().zip(&torques) {
@@ -265,10 +271,12 @@ fn estimates<A: Arithmetic>(table: &mut Table) {
     let mut result = flat(&[&<[A::Scalar; 4]>::from(estimator.state())]);
     result.extend(flat(&[&estimator.state_std().unwrap()]));
     result.extend(numbers(estimator.params()));
+    result.extend(flat(&[&estimator.zeros(), &[estimator.torque_factor()]]));
     let given = json!({
         "arithmetic": A::NAME, "params": numbers(&MACHINE.cast::<A::Scalar>()),
         "angle_std": noise.angle_std.to_f64(), "torque_std": noise.torque_std.to_f64(),
         "mass2_std": std.mass2.to_f64(), "coulomb2_std": std.coulomb2.to_f64(),
+        "zero1_std": std.zero1.to_f64(), "torque_factor_std": std.torque_factor.to_f64(),
         "angles": flat(&[angles.as_flattened()]), "torques": torques,
     });
     table.add("estimate", given, result);
@@ -305,8 +313,13 @@ fn identification(table: &mut Table) {
 
 /// From encoder counts to torques.
 fn mpc(table: &mut Table) {
-    let settings =
-        Settings { params: MACHINE.cast(), limit: LIMIT, counts: [4096, 1024], ticks: 5 };
+    let settings = Settings {
+        params: MACHINE.cast(),
+        limit: LIMIT,
+        counts: [4096, 1024],
+        delay: 0.0625,
+        plan_timeout: 1.5,
+    };
     let mut controller = Controller::<100>::new(settings).unwrap();
     let mut replanner = Replanner::new(settings).unwrap();
     let mut machine = Pendulum::<Damped<Fast>>::new(MACHINE.cast(), MOVING.cast()).unwrap();
@@ -323,9 +336,12 @@ fn mpc(table: &mut Table) {
             replanner.work();
         }
     }
+    let Report { zeros: [zero1, zero2], torque_factor, misses, plan_age } = controller.report();
+    torques.extend([zero1, zero2, torque_factor, misses, plan_age]);
     let given = json!({
         "params": numbers(&settings.params), "limit": LIMIT, "per_turn": settings.counts,
-        "ticks": settings.ticks, "every": 20, "counts": counts,
+        "delay": settings.delay, "plan_timeout": settings.plan_timeout, "every": 20,
+        "counts": counts,
     });
     table.add("control", given, torques);
 }

@@ -7,3 +7,4 @@ mod parameter_std;
 pub use estimator::{Estimator, KalmanFilter, ParameterEstimator};
 pub use noise::Noise;
 pub use parameter_std::ParameterStd;
+pub(in crate::control) use parameter_std::USUAL;

@@ -31,8 +31,8 @@
 //! let params = params.with_inertias_about_joints([0.0319, 0.0509]);
 //! let start = State { theta1: 0.05, ..State::HANGING };
 //! let mut machine = Pendulum::<Damped<Portable>>::new(params, start)?;
-//! let settings =
-//!     Settings { params: params.cast(), limit: 6.0, counts: [4096, 4096], ticks: 5 };
+//! let (params, counts) = (params.cast(), [4096, 4096]);
+//! let settings = Settings { params, limit: 6.0, counts, delay: 0.0, plan_timeout: 1.0 };
 //! let mut controller = Controller::<100>::new(settings)?; // plans of 100 decisions
 //! let mut replanner = Replanner::new(settings)?;
 //! for tick in 0..2000 {
@@ -51,7 +51,8 @@
 //! ```
 
 mod controller;
+mod delay;
 mod replanner;
 
-pub use controller::{Controller, Settings};
+pub use controller::{Controller, Report, Settings};
 pub use replanner::Replanner;

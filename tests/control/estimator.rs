@@ -161,7 +161,6 @@ fn ten_seconds_of_motion_tell_the_parameters() {
             let std = ParameterStd {
                 mass1: number(0.05),
                 mass2: number(0.05),
-                length1: number(0.0),
                 inertia1: number(0.002),
                 inertia2: number(0.002),
                 rotor: number(0.003),
@@ -169,6 +168,7 @@ fn ten_seconds_of_motion_tell_the_parameters() {
                 damping2: number(0.01),
                 coulomb1: number(0.02),
                 coulomb2: number(0.02),
+                ..ParameterStd::default()
             };
             let mut estimator = ParameterEstimator::<A>::new(given.cast(), std, noise()).unwrap();
             follow(&mut estimator, Machine::new(truth, seed), &mut rng, |_, _, _| {});

@@ -56,10 +56,16 @@ pub struct acrobot_parameter_std_t {
     pub coulomb2: f32,
     /// Of the rotor, kg m².
     pub rotor: f32,
+    /// Of what the first encoder says where θ1 is 0, rad. It is given as 0.
+    pub zero1: f32,
+    /// Of what the second encoder says where θ2 is 0, rad. It is given as 0.
+    pub zero2: f32,
+    /// Of the torque that acts, divided by the one that is sent. It is given as 1.
+    pub torque_factor: f32,
 }
 
 /// Bytes of an acrobot_estimator_t.
-pub const ACROBOT_ESTIMATOR_SIZE: usize = 288;
+pub const ACROBOT_ESTIMATOR_SIZE: usize = 304;
 
 /// Estimates the state of a machine: an extended Kalman filter. Call acrobot_estimator_init first,
 /// and then in each `dt` correct, decide and predict. You may copy and move it.
@@ -75,7 +81,7 @@ impl Holder for acrobot_estimator_t {
 }
 
 /// Bytes of an acrobot_parameter_estimator_t.
-pub const ACROBOT_PARAMETER_ESTIMATOR_SIZE: usize = 960;
+pub const ACROBOT_PARAMETER_ESTIMATOR_SIZE: usize = 1344;
 
 /// As acrobot_estimator_t, and estimates parameters.
 #[repr(C, align(16))]
@@ -207,4 +213,17 @@ pub unsafe extern "C" fn acrobot_parameter_estimator_params(
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
     get(filter, params, |value| Ok((*value.params()).into()))
+}
+
+/// What the encoders are estimated to say where the angles are 0, rad, and the torque that is
+/// estimated to act, divided by the one of acrobot_parameter_estimator_predict.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_parameter_estimator_errors(
+    filter: *const acrobot_parameter_estimator_t,
+    errors: *mut [f32; 3],
+) -> acrobot_status_t {
+    get(filter, errors, |value| {
+        let [zero1, zero2] = value.zeros();
+        Ok([zero1, zero2, value.torque_factor()])
+    })
 }

@@ -41,10 +41,11 @@ const _: () = {
     has::<acrobot_region_t>(offset_of!(acrobot_region_t, factor), 16, 80);
     has::<acrobot_feedback_t>(offset_of!(acrobot_feedback_t, reach), 180, 184);
     has::<acrobot_noise_t>(offset_of!(acrobot_noise_t, torque_std), 4, 8);
-    has::<acrobot_parameter_std_t>(offset_of!(acrobot_parameter_std_t, rotor), 36, 40);
+    has::<acrobot_parameter_std_t>(offset_of!(acrobot_parameter_std_t, torque_factor), 48, 52);
     has::<acrobot_sample_t>(offset_of!(acrobot_sample_t, torques), 16, 32);
     has::<acrobot_fit_t>(offset_of!(acrobot_fit_t, rank_deficiency), 240, 248);
-    has::<acrobot_settings_t>(offset_of!(acrobot_settings_t, ticks), 100, 104);
+    has::<acrobot_settings_t>(offset_of!(acrobot_settings_t, plan_timeout), 104, 108);
+    has::<acrobot_report_t>(offset_of!(acrobot_report_t, plan_age), 16, 20);
     has::<acrobot_batch_results_t>(offset_of!(acrobot_batch_results_t, final_observations), 16, 20);
     has::<acrobot_batch_settings_t>(offset_of!(acrobot_batch_settings_t, max_steps), 16, 20);
 };

@@ -41,13 +41,15 @@ pub trait Holder: Sized {
     /// Writes the value.
     unsafe fn init(this: *mut Self, value: Self::Value) -> Result<(), Rejected> {
         check(this)?;
-        let tagged = Tagged { tag: Self::TAG, value };
         // Does not compile if the holder is too small or not aligned enough on this target.
         const {
             assert!(size_of::<Tagged<Self>>() <= size_of::<Self>());
             assert!(align_of::<Tagged<Self>>() <= align_of::<Self>());
         }
-        this.cast::<Tagged<Self>>().write(tagged);
+        // Field by field, because a whole one would be on the stack first.
+        let to = this.cast::<Tagged<Self>>();
+        (&raw mut (*to).value).write(value);
+        (&raw mut (*to).tag).write(Self::TAG);
         Ok(())
     }
 
@@ -86,7 +88,14 @@ pub unsafe fn init<H: Holder>(
 ) -> acrobot_status_t {
     status(|| {
         check_result(error, holder)?;
-        H::init(holder, call().inspect_err(|rejected| rejected.explain(error))?)
+        // `?` would copy the value.
+        match call() {
+            Ok(value) => H::init(holder, value),
+            Err(rejected) => {
+                rejected.explain(error);
+                Err(rejected)
+            }
+        }
     })
 }
 

@@ -2,7 +2,7 @@
 
 use core::ptr;
 
-use acrobot::control::mpc::{Controller, Replanner, Settings};
+use acrobot::control::mpc::{Controller, Replanner, Report, Settings};
 
 use crate::data::{acrobot_params_t, acrobot_state_t};
 use crate::memory::{Holder, Span, change, check, check_apart, get, init, read};
@@ -21,21 +21,38 @@ pub struct acrobot_settings_t {
     pub limit: f32,
     /// The counts of each encoder for a turn, above 0.
     pub counts: [i32; 2],
-    /// Ticks from a decision to the next, above 0, such as 5 of 2 ms.
-    pub ticks: u32,
+    /// The time from a torque of a tick until it acts, s, with the time constant of the motor: 0 if
+    /// it acts at once.
+    pub delay: f32,
+    /// The torque is 0 while the plan is older than this, s, such as 1; INFINITY for never.
+    pub plan_timeout: f32,
+}
+
+/// What a controller knows beside the state and the parameters.
+#[repr(C)]
+pub struct acrobot_report_t {
+    /// What the encoders are estimated to say where the angles are 0, rad.
+    pub zeros: [f32; 2],
+    /// The torque that is estimated to act, divided by the one that is sent.
+    pub torque_factor: f32,
+    /// How many of the last hundred ticks have angles that no motion of the machine explains: a few
+    /// after a push. Above 8 a tick is rejected.
+    pub misses: f32,
+    /// The time since the last plan, s. It is 0 before the first one.
+    pub plan_age: f32,
 }
 
 impl TryFrom<acrobot_settings_t> for Settings {
     type Error = Rejected;
 
     fn try_from(settings: acrobot_settings_t) -> Result<Self, Rejected> {
-        let acrobot_settings_t { params, limit, counts, ticks } = settings;
-        Ok(Self { params: params.try_into()?, limit, counts, ticks })
+        let acrobot_settings_t { params, limit, counts, delay, plan_timeout } = settings;
+        Ok(Self { params: params.try_into()?, limit, counts, delay, plan_timeout })
     }
 }
 
 /// Bytes of an acrobot_controller_t.
-pub const ACROBOT_CONTROLLER_SIZE: usize = 5552;
+pub const ACROBOT_CONTROLLER_SIZE: usize = 5776;
 
 /// What a timer's interrupt does: it estimates the state, and follows a plan of 100 decisions. Call
 /// acrobot_controller_init first. You may copy and move it.
@@ -77,7 +94,8 @@ pub unsafe extern "C" fn acrobot_controller_init(
 }
 
 /// The torque from now to the next tick, N m, from what both encoders count. It is short. If it is
-/// rejected, switch the motor off.
+/// rejected, switch the motor off: a number is not finite, or no motion of the machine explains
+/// what the encoders count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_controller_tick(
     controller: *mut acrobot_controller_t,
@@ -108,6 +126,18 @@ pub unsafe extern "C" fn acrobot_controller_params(
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
     get(controller, params, |value| Ok((*value.params()).into()))
+}
+
+/// What the controller knows beside the state and the parameters.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_controller_report(
+    controller: *const acrobot_controller_t,
+    report: *mut acrobot_report_t,
+) -> acrobot_status_t {
+    get(controller, report, |value| {
+        let Report { zeros, torque_factor, misses, plan_age } = value.report();
+        Ok(acrobot_report_t { zeros, torque_factor, misses, plan_age })
+    })
 }
 
 /// A replanner without a plan.

@@ -75,7 +75,7 @@ int main(void)
 {
     static acrobot_controller_t controller;
     static acrobot_replanner_t replanner;
-    acrobot_settings_t settings = {DRAWN, 6, {COUNTS, COUNTS}, 5};
+    acrobot_settings_t settings = {DRAWN, 6, {COUNTS, COUNTS}, 0, 1};
     acrobot_state_t x = UPRIGHT;
     float torque;
     acrobot_status_t status = acrobot_init(&machine, 0);

@@ -109,16 +109,16 @@
 #define ACROBOT_SWING_UP_SIZE 496
 
 // Bytes of an acrobot_estimator_t.
-#define ACROBOT_ESTIMATOR_SIZE 288
+#define ACROBOT_ESTIMATOR_SIZE 304
 
 // Bytes of an acrobot_parameter_estimator_t.
-#define ACROBOT_PARAMETER_ESTIMATOR_SIZE 960
+#define ACROBOT_PARAMETER_ESTIMATOR_SIZE 1344
 
 // Bytes of an acrobot_regression_t.
 #define ACROBOT_REGRESSION_SIZE 992
 
 // Bytes of an acrobot_controller_t.
-#define ACROBOT_CONTROLLER_SIZE 5552
+#define ACROBOT_CONTROLLER_SIZE 5776
 
 // Bytes of an acrobot_replanner_t.
 #define ACROBOT_REPLANNER_SIZE 5376
@@ -542,6 +542,12 @@ typedef struct {
   float coulomb2;
   // Of the rotor, kg m².
   float rotor;
+  // Of what the first encoder says where θ1 is 0, rad. It is given as 0.
+  float zero1;
+  // Of what the second encoder says where θ2 is 0, rad. It is given as 0.
+  float zero2;
+  // Of the torque that acts, divided by the one that is sent. It is given as 1.
+  float torque_factor;
 } acrobot_parameter_std_t;
 
 // A regression of recordings, of constant size. Call acrobot_regression_init first. You may copy
@@ -585,9 +591,25 @@ typedef struct {
   float limit;
   // The counts of each encoder for a turn, above 0.
   int32_t counts[2];
-  // Ticks from a decision to the next, above 0, such as 5 of 2 ms.
-  uint32_t ticks;
+  // The time from a torque of a tick until it acts, s, with the time constant of the motor: 0 if
+  // it acts at once.
+  float delay;
+  // The torque is 0 while the plan is older than this, s, such as 1; INFINITY for never.
+  float plan_timeout;
 } acrobot_settings_t;
+
+// What a controller knows beside the state and the parameters.
+typedef struct {
+  // What the encoders are estimated to say where the angles are 0, rad.
+  float zeros[2];
+  // The torque that is estimated to act, divided by the one that is sent.
+  float torque_factor;
+  // How many of the last hundred ticks have angles that no motion of the machine explains: a few
+  // after a push. Above 8 a tick is rejected.
+  float misses;
+  // The time since the last plan, s. It is 0 before the first one.
+  float plan_age;
+} acrobot_report_t;
 
 // What the main loop does: it plans for the estimated machine while this moves. Call
 // acrobot_replanner_init first. You may copy and move it.
@@ -851,6 +873,11 @@ acrobot_status_t acrobot_parameter_estimator_state_std(const acrobot_parameter_e
 acrobot_status_t acrobot_parameter_estimator_params(const acrobot_parameter_estimator_t *filter,
     acrobot_params_t *params);
 
+// What the encoders are estimated to say where the angles are 0, rad, and the torque that is
+// estimated to act, divided by the one of acrobot_parameter_estimator_predict.
+acrobot_status_t acrobot_parameter_estimator_errors(const acrobot_parameter_estimator_t *filter,
+    float (*errors)[3]);
+
 // No recording.
 acrobot_status_t acrobot_regression_init(acrobot_regression_t *regression);
 
@@ -886,7 +913,8 @@ acrobot_status_t acrobot_controller_init(acrobot_controller_t *controller,
     const acrobot_settings_t *settings, acrobot_error_t *error);
 
 // The torque from now to the next tick, N m, from what both encoders count. It is short. If it is
-// rejected, switch the motor off.
+// rejected, switch the motor off: a number is not finite, or no motion of the machine explains
+// what the encoders count.
 acrobot_status_t acrobot_controller_tick(acrobot_controller_t *controller, int32_t count1,
     int32_t count2, float *torque, acrobot_error_t *error);
 
@@ -897,6 +925,10 @@ acrobot_status_t acrobot_controller_state(const acrobot_controller_t *controller
 // The estimated parameters.
 acrobot_status_t acrobot_controller_params(const acrobot_controller_t *controller,
     acrobot_params_t *params);
+
+// What the controller knows beside the state and the parameters.
+acrobot_status_t acrobot_controller_report(const acrobot_controller_t *controller,
+    acrobot_report_t *report);
 
 // A replanner without a plan.
 acrobot_status_t acrobot_replanner_init(acrobot_replanner_t *replanner,

@@ -217,7 +217,7 @@ int main(void)
     a_covariances->s[0] = a_covariances->s[1] = 1;
     a_state->theta1 = 3.1415927f;
     ACCEPTED(acrobot_task_params(ACROBOT_TASK_GYMNASIUM, a_params, NULL));
-    const acrobot_settings_t settings = {*a_params, 6, {4096, 1024}, 5};
+    const acrobot_settings_t settings = {*a_params, 6, {4096, 1024}, 0, 1};
     *a_settings = settings;
     ACCEPTED(acrobot_linearize(a_params, a_state, 0, a_linear_model, NULL));
     for (int i = 0; i < COUNT; i++) {

@@ -291,10 +291,12 @@ static void compare_knots(const acrobot_knot_t *knots, size_t count)
     const acrobot_params_t machine_ = machine(params); \
     const acrobot_noise_t noise = {(float)angle_std, (float)torque_std}; \
     const acrobot_parameter_std_t std = { \
-        0, (float)mass2_std, 0, 0, 0, 0, 0, 0, (float)coulomb2_std, 0}; \
+        0, (float)mass2_std, 0, 0, 0, 0, 0, 0, (float)coulomb2_std, 0, (float)zero1_std, 0, \
+        (float)torque_factor_std}; \
     acrobot_parameter_estimator_t filter; \
     acrobot_state_t state; \
     acrobot_params_t estimated; \
+    float errors[3]; \
     ACCEPTED(acrobot_parameter_estimator_init(&filter, &machine_, &std, &noise, NULL)); \
     for (size_t i = 0; i < COUNT(torques); i++) { \
         ACCEPTED(acrobot_parameter_estimator_correct(&filter, (float)angles[2 * i], \
@@ -306,7 +308,9 @@ static void compare_knots(const acrobot_knot_t *knots, size_t count)
     ACCEPTED(acrobot_parameter_estimator_state_std(&filter, &state)); \
     COMPARE(state); \
     ACCEPTED(acrobot_parameter_estimator_params(&filter, &estimated)); \
-    COMPARE_PARAMS(estimated)
+    COMPARE_PARAMS(estimated); \
+    ACCEPTED(acrobot_parameter_estimator_errors(&filter, &errors)); \
+    COMPARE(errors)
 
 #define ADD(samples, count) \
     ACCEPTED(acrobot_regression_add(&regression, samples, count, (double)drawn.dt, \
@@ -339,9 +343,10 @@ static void compare_knots(const acrobot_knot_t *knots, size_t count)
 #define control() \
     const acrobot_settings_t settings = { \
         machine(params), (float)limit, {(int32_t)per_turn[0], (int32_t)per_turn[1]}, \
-        (uint32_t)ticks}; \
+        (float)delay, (float)plan_timeout}; \
     static acrobot_controller_t controller; \
     static acrobot_replanner_t replanner; \
+    acrobot_report_t report_; \
     float torque; \
     ACCEPTED(acrobot_controller_init(&controller, &settings, NULL)); \
     ACCEPTED(acrobot_replanner_init(&replanner, &settings, NULL)); \
@@ -353,7 +358,9 @@ static void compare_knots(const acrobot_knot_t *knots, size_t count)
             ACCEPTED(acrobot_replanner_exchange(&replanner, &controller)); \
             ACCEPTED(acrobot_replanner_work(&replanner)); \
         } \
-    }
+    } \
+    ACCEPTED(acrobot_controller_report(&controller, &report_)); \
+    COMPARE(report_)
 
 int main(void)
 {

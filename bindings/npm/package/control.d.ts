@@ -286,6 +286,12 @@ export interface ParameterStd {
   coulomb2: number;
   /** Of the rotor, kg m². */
   rotor: number;
+  /** Of what the first encoder says where θ1 is 0, rad. It is given as 0. */
+  zero1: number;
+  /** Of what the second encoder says where θ2 is 0, rad. It is given as 0. */
+  zero2: number;
+  /** Of the torque that acts, divided by the one that is sent. It is given as 1. */
+  torqueFactor: number;
 }
 
 /** As `Estimator`, and estimates the parameters that have a standard deviation above 0. */
@@ -296,6 +302,10 @@ export class ParameterEstimator extends Filter {
   );
   /** The estimated parameters, and those that are known. */
   get params(): Readonly<Params>;
+  /** What the encoders are estimated to say where the angles are 0, rad. */
+  get zeros(): [number, number];
+  /** The torque that is estimated to act, divided by the one of `predict`. */
+  get torqueFactor(): number;
 }
 
 /** What a machine did, with a sample in each `dt`. */
@@ -368,20 +378,44 @@ export interface Settings {
   limit: number;
   /** The counts of each encoder for a turn, above 0. */
   counts: readonly [number, number];
-  /** Ticks from a decision to the next, from 1, such as 5 of 2 ms. */
-  ticks: number;
+  /**
+   * The time from a torque of `tick` until it acts, s, with the time constant of the motor. Default
+   * 0: at once.
+   */
+  delay?: number;
+  /** The torque is 0 while the plan is older than this, s, such as 1. Default `Infinity`: never. */
+  planTimeout?: number;
+}
+
+/** What a controller knows beside the state and the parameters. */
+export interface Report {
+  /** What the encoders are estimated to say where the angles are 0, rad. */
+  zeros: [number, number];
+  /** The torque that is estimated to act, divided by the one that is sent. */
+  torqueFactor: number;
+  /**
+   * How many of the last hundred ticks have angles that no motion of the machine explains: a few
+   * after a push. Above 8 a tick is rejected.
+   */
+  misses: number;
+  /** The time since the last plan, s. It is 0 before the first one. */
+  planAge: number;
 }
 
 /** From encoder counts to torques: estimates the state, and follows a plan of 100 decisions. */
 export class Controller extends Kept {
   /** Without a plan its torque is 0. */
   constructor(settings: Readonly<Settings>);
-  /** The torque until the next tick, N m, from what both encoders count. */
+  /**
+   * The torque until the next tick, N m, from what both encoders count. If it throws, switch the
+   * motor off: a number is not finite, or no motion of the machine explains what they count.
+   */
   tick(count1: number, count2: number): number;
   /** The estimated state. */
   get state(): Readonly<State>;
   /** The estimated parameters. */
   get params(): Readonly<Params>;
+  get report(): Readonly<Report>;
 }
 
 /** Plans for a controller while the machine moves. */

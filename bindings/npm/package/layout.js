@@ -14,7 +14,7 @@ export const KINDS = {
 
 /** Bytes. */
 export const SIZES = {
-  acrobot: 304, actionSpace: 96, controller: 5552, estimator: 288, parameterEstimator: 960,
+  acrobot: 304, actionSpace: 96, controller: 5776, estimator: 304, parameterEstimator: 1344,
   planner: 752, regression: 992, replanner: 5376, snapshot: 224, swingUp: 496,
 };
 
@@ -79,12 +79,16 @@ export const STRUCTS = {
   acrobot_parameter_std_t: {
     mass1: [0, 1], mass2: [1, 1], length1: [2, 1], inertia1: [3, 1], inertia2: [4, 1],
     damping1: [5, 1], damping2: [6, 1], coulomb1: [7, 1], coulomb2: [8, 1], rotor: [9, 1],
+    zero1: [10, 1], zero2: [11, 1], torqueFactor: [12, 1],
   },
   acrobot_fit_t: {
     values: [0, 20], stdErrors: [20, 20], weakest: [40, 20], rankDeficiency: [60, 1],
   },
   acrobot_settings_t: {
-    params: [0, 22], limit: [22, 1], counts: [23, 2], ticks: [25, 1],
+    params: [0, 22], limit: [22, 1], counts: [23, 2], delay: [25, 1], planTimeout: [26, 1],
+  },
+  acrobot_report_t: {
+    zeros: [0, 2], torqueFactor: [2, 1], misses: [3, 1], planAge: [4, 1],
   },
   acrobot_batch_results_t: {
     rewards: [0, 1], terminated: [1, 1], truncated: [2, 1], observations: [3, 1],

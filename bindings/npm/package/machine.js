@@ -9,7 +9,8 @@ import { checked, invalid, positive } from "./wasm.js";
 
 const {
   acrobot_fit_t: FIT, acrobot_noise_t: NOISE, acrobot_params_t: PARAMS,
-  acrobot_parameter_std_t: STD, acrobot_settings_t: SETTINGS, acrobot_state_t: STATE,
+  acrobot_parameter_std_t: STD, acrobot_report_t: REPORT, acrobot_settings_t: SETTINGS,
+  acrobot_state_t: STATE,
 } = STRUCTS;
 
 /** The words of Gymnasium's parameters with changes. */
@@ -77,6 +78,20 @@ export class ParameterEstimator extends Filter {
 
   get params() {
     return unpack(paramsOf("acrobot_parameter_estimator_params", this), PARAMS);
+  }
+
+  #errors() {
+    const errors = new Float32Array(3);
+    call({}, "acrobot_parameter_estimator_errors", this, errors);
+    return Array.from(errors);
+  }
+
+  get zeros() {
+    return this.#errors().slice(0, 2);
+  }
+
+  get torqueFactor() {
+    return this.#errors()[2];
   }
 }
 
@@ -158,17 +173,15 @@ const isInt32 = (number) => number === (number | 0);
 /** A copy of a machine with encoders, and its words. */
 function readSettings(settings) {
   const given = checked("settings", settings, Object.keys(SETTINGS));
-  const { params, limit, counts, ticks } = given;
+  const { params, limit, counts, delay = 0, planTimeout = Infinity } = given;
   const changes = readChanges(params);
-  checkNumber("limit", limit);
+  const numbers = { limit, delay, planTimeout };
+  for (const [name, value] of Object.entries(numbers)) checkNumber(name, value);
   const integers = elements("counts", counts, 2, isInt32, "must be an integer of 32 bits");
-  positive("ticks", ticks);
-  const words = pack(empty(SETTINGS), { limit }, SETTINGS);
+  const words = pack(empty(SETTINGS), numbers, SETTINGS);
   words.set(machine(changes));
-  const [[at], [last]] = [SETTINGS.counts, SETTINGS.ticks];
-  new Int32Array(words.buffer).set(integers, at);
-  new Uint32Array(words.buffer)[last] = ticks;
-  return [{ ...changes, limit, counts: integers, ticks }, words];
+  new Int32Array(words.buffer).set(integers, SETTINGS.counts[0]);
+  return [{ ...changes, ...numbers, counts: integers }, words];
 }
 
 export class Controller extends Made {
@@ -195,6 +208,12 @@ export class Controller extends Made {
 
   get params() {
     return unpack(paramsOf("acrobot_controller_params", this), PARAMS);
+  }
+
+  get report() {
+    const words = empty(REPORT);
+    call({}, "acrobot_controller_report", this, words);
+    return unpack(words, REPORT);
   }
 }
 

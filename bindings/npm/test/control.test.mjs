@@ -53,7 +53,7 @@ test("estimates follow what is measured", () => {
   assert.deepEqual(estimator.state, state(0.5, -0.25));
   estimator.predict(0);
   assert.ok(estimator.state.dtheta1 < 0 && estimator.stateStd.theta1 < 0.5);
-  const controller = new Controller({ ...SETTINGS, ticks: 5 });
+  const controller = new Controller(SETTINGS);
   controller.tick(1024, 128);
   const { theta1, theta2 } = deviationFrom(controller.state, state(Math.PI / 2, Math.PI / 4));
   assert.ok(Math.abs(theta1) + Math.abs(theta2) < 0.01);
@@ -64,7 +64,7 @@ test("invalid arguments are rejected with Rust's messages", () => {
   const [planner, plan] = planned();
   const make = (limit, cost) => () => new Planner(PARAMS, limit, cost);
   const hold = (q, params = PARAMS) => () => regulator(params, q, 1, UPRIGHT);
-  const settings = { ...SETTINGS, ticks: 5 };
+  const settings = SETTINGS;
   const [regression, stdErrors] = [new Regression(), new Float64Array(10)];
   const add = (dt, gravity = 9.8, half = 1, window = 1) => () =>
     regression.add({ angles: [0, 0], torques: [0] }, dt, gravity, half, window);

@@ -114,14 +114,18 @@ const CALLS = {
     return rowsOf(states, 4).map((state) => swingUp.torque(stateOf(state)));
   },
   estimate({ params, angle_std: angleStd, torque_std: torqueStd, angles, torques, ...std }) {
-    const doubt = { mass2: std.mass2_std, coulomb2: std.coulomb2_std };
+    const doubt = {
+      mass2: std.mass2_std, coulomb2: std.coulomb2_std, zero1: std.zero1_std,
+      torqueFactor: std.torque_factor_std,
+    };
     const noise = { angleStd, torqueStd };
     const estimator = new control.ParameterEstimator(machine(params), doubt, noise);
     torques.forEach((torque, i) => {
       estimator.correct(...angles.slice(2 * i, 2 * i + 2));
       estimator.predict(torque);
     });
-    return [estimator.state, estimator.stateStd, estimator.params].flatMap(numbersOf);
+    const { state, stateStd, params: found, zeros, torqueFactor } = estimator;
+    return [...[state, stateStd, found].flatMap(numbersOf), ...zeros, torqueFactor];
   },
   identify({ params, angles, torques, first, half, window, fit }) {
     const [drawn, regression] = [machine(params), new control.Regression()];
@@ -134,11 +138,11 @@ const CALLS = {
     assert.deepEqual([flat(...Object.values(arrays)), rankDeficiency], [fit, 0]);
     return [found, control.fitParams(regression.fit(), drawn)].flatMap(numbersOf);
   },
-  control({ params, limit, per_turn: counts, ticks, every, counts: measured }) {
-    const settings = { params: machine(params), limit, counts, ticks };
+  control({ params, limit, per_turn: counts, delay, plan_timeout: planTimeout, every, ...row }) {
+    const settings = { params: machine(params), limit, counts, delay, planTimeout };
     const controller = new control.Controller(settings);
     const replanner = new control.Replanner(settings);
-    return rowsOf(measured, 2).map((each, tick) => {
+    const torques = rowsOf(row.counts, 2).map((each, tick) => {
       const torque = controller.tick(...each);
       if (tick % every === 0) {
         replanner.exchange(controller);
@@ -146,6 +150,7 @@ const CALLS = {
       }
       return torque;
     });
+    return [...torques, ...numbersOf(controller.report)];
   },
 };
 

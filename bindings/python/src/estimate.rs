@@ -21,18 +21,28 @@ impl Estimator {
         acrobot: &Bound<'_, Acrobot>,
         angle_std: f64,
         torque_std: f64,
-        parameter_std: [f64; 10],
+        parameter_std: [f64; 13],
     ) -> PyResult<Self> {
         let [mass1, mass2, length1, inertia1, inertia2, ..] = parameter_std;
-        let [.., damping1, damping2, coulomb1, coulomb2, rotor] = parameter_std;
+        let [.., damping1, damping2, coulomb1, coulomb2, rotor, _, _, _] = parameter_std;
+        let [.., zero1, zero2, torque_factor] = parameter_std;
         let links =
             ParameterStd { mass1, mass2, length1, inertia1, inertia2, ..Default::default() };
-        let std = ParameterStd { damping1, damping2, coulomb1, coulomb2, rotor, ..links };
+        let links = ParameterStd { damping1, damping2, coulomb1, coulomb2, rotor, ..links };
+        let std = ParameterStd { zero1, zero2, torque_factor, ..links };
         let noise = Noise { angle_std, torque_std };
         let estimator = ParameterEstimator::new(alone(acrobot)?.acrobot.params(), std, noise);
-        estimator.map(Self).map_err(|error| match place_of(error) {
-            Some(place) => named(error, format_args!("parameter_std['{}']", NAMES[place])),
-            None => rejected(error),
+        estimator.map(Self).map_err(|error| {
+            let name = match error.name() {
+                "zero1" => "ZERO_1",
+                "zero2" => "ZERO_2",
+                "torque_factor" => "TORQUE_FACTOR",
+                _ => place_of(error).map_or("", |place| NAMES[place]),
+            };
+            match name {
+                "" => rejected(error),
+                name => named(error, format_args!("parameter_std['{name}']")),
+            }
         })
     }
 
@@ -50,13 +60,21 @@ impl Estimator {
         Ok(alone(slf)?.0.state_std())
     }
 
+    fn zeros(slf: &Bound<'_, Self>) -> PyResult<[f64; 2]> {
+        Ok(alone(slf)?.0.zeros())
+    }
+
+    fn torque_factor(slf: &Bound<'_, Self>) -> PyResult<f64> {
+        Ok(alone(slf)?.0.torque_factor())
+    }
+
     fn params(slf: &Bound<'_, Self>) -> PyResult<Named<f64>> {
         Ok(named_numbers(alone(slf)?.0.params()))
     }
 
     /// Makes any estimator, which `__setstate__` then replaces by a copy of this one.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
-        let any = (Acrobot::new(false, "gymnasium")?, 1.0, 1.0, [0.0; 10]);
+        let any = (Acrobot::new(false, "gymnasium")?, 1.0, 1.0, [0.0; 13]);
         Ok((slf.get_type(), any, save(slf.py(), &alone(slf)?.0)?))
     }
 

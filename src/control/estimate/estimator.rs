@@ -7,10 +7,10 @@
 //! Constants have the machine's own units or none. Those that count measurements are of statistics,
 //! which need a number of samples and not a time.
 
-use core::array::from_fn;
-
 use super::noise::{Given, Noise};
-use super::parameter_std::{PARAMETERS, Parameter, ParameterStd, estimated};
+use super::parameter_std::{
+    FRICTION, PARAMETERS, Parameter, ParameterStd, ROTOR, ZEROS, estimated,
+};
 use crate::arithmetic::Arithmetic;
 use crate::control::model::LinearModel;
 use crate::control::model::partials::MassMatrix;
@@ -34,6 +34,11 @@ const FOLLOWS: [f64; 2] = [0.02, 12.0];
 const IN_A_STEP: f64 = 1e-6;
 /// An estimated parameter differs from the given one by at most so many deviations.
 const MOST: f64 = 4.0;
+/// After a measurement the count of those that no motion explains has this part left.
+const FORGETS: f64 = 0.995;
+/// The variance of an angle is at least this part of that of its measurement, if its zero is
+/// estimated: rounding loses a smaller one.
+const LEAST: f64 = 1e-3;
 
 /// Estimates the state of a machine.
 ///
@@ -92,6 +97,11 @@ pub struct KalmanFilter<A: Arithmetic, const K: usize> {
     /// The covariances of the state. `None` before a measurement, and after an overflow.
     of_state: Option<Matrix<A::Scalar>>,
     parameters: [Parameter<A::Scalar, K>; K],
+    /// What the encoders say where the angles are 0, rad, and the part of a torque that acts.
+    zeros: [A::Scalar; 2],
+    factor: A::Scalar,
+    /// How many of the last angles no motion of the model explains.
+    misses: A::Scalar,
 }
 
 impl<A: Arithmetic> Estimator<A> {
@@ -112,45 +122,64 @@ impl<A: Arithmetic> ParameterEstimator<A> {
     ///
     /// The errors of [`Estimator::new`], and a standard deviation is not finite, below 0, or not 0
     /// for a friction or the rotor in an arithmetic without friction.
-    #[expect(clippy::indexing_slicing, reason = "i is below PARAMETERS")]
     pub fn new(
         params: Params<A::Scalar>,
         std: ParameterStd<A::Scalar>,
         noise: Noise<A::Scalar>,
     ) -> Result<Self, Error> {
-        let std = std.numbers();
-        let given = estimated(params.numbers());
-        for (i, ((name, unit, _), deviation)) in estimated(FIELDS).into_iter().zip(std).enumerate()
-        {
-            let value = deviation.to_f64();
-            Range::AtLeastZero.check(name, value, unit)?;
-            if i >= 5 && !A::HAS_FRICTION && value > 0.0 {
-                let rule = "known unless the arithmetic is Damped, in";
-                return Err(Error::OutOfRange { name, value, unit, rule });
-            }
-        }
-        let zero = A::Scalar::ZERO;
-        let parameters = from_fn(|i| {
-            let ((name, given), deviation) = (given[i], std[i]);
-            let most = A::Scalar::from_f64(MOST) * deviation;
-            let is_negative = given - most < zero && name != "rotor";
-            let limits = [if is_negative { zero } else { given - most }, given + most];
-            let (with_state, with_params) = ([zero; 4], [zero; PARAMETERS]);
-            Parameter { deviation, limits, with_state, with_params }
-        });
-        Self::build(params, noise, parameters)
+        Self::with_std(params, std, noise)
     }
 }
 
 impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
+    /// An estimator of the first `K` parameters.
+    #[expect(clippy::indexing_slicing, reason = "i is below K, which is at most PARAMETERS")]
+    pub(in crate::control) fn with_std(
+        params: Params<A::Scalar>,
+        std: ParameterStd<A::Scalar>,
+        noise: Noise<A::Scalar>,
+    ) -> Result<Self, Error> {
+        const { assert!(K <= PARAMETERS) };
+        let (std, zero, one) = (std.numbers(), A::Scalar::ZERO, A::Scalar::ONE);
+        let instruments = [("zero1", zero), ("zero2", zero), ("torque_factor", one)];
+        let given = estimated(params.numbers(), instruments);
+        let units = ["rad", "rad", "of the torque"].map(|unit| ("", unit, Range::AtLeastZero));
+        let units = estimated(FIELDS, units);
+        let mut parameters = [Parameter::NONE; K];
+        for (i, parameter) in parameters.iter_mut().enumerate() {
+            let ((name, given), (_, unit, _), deviation) = (given[i], units[i], std[i]);
+            let value = deviation.to_f64();
+            Range::AtLeastZero.check(name, value, unit)?;
+            let is_friction = (FRICTION.contains(&i) || i == ROTOR) && !A::HAS_FRICTION;
+            if is_friction && value > 0.0 {
+                let rule = "known unless the arithmetic is Damped, in";
+                return Err(Error::OutOfRange { name, value, unit, rule });
+            }
+            let most = A::Scalar::from_f64(MOST) * deviation;
+            let is_signed = i == ROTOR || ZEROS.contains(&i);
+            let is_negative = given - most < zero && !is_signed;
+            let limits = [if is_negative { zero } else { given - most }, given + most];
+            *parameter = Parameter { deviation, limits, ..Parameter::NONE };
+        }
+        Self::build(params, noise, parameters)
+    }
+
     fn build(
         params: Params<A::Scalar>,
         noise: Noise<A::Scalar>,
         parameters: [Parameter<A::Scalar, K>; K],
     ) -> Result<Self, Error> {
         let model = Pendulum::new(params, State::HANGING)?;
-        let given = Given::new(model.params(), noise)?;
-        Ok(Self { model, given, torque: given.limits[1], of_state: None, parameters })
+        let mut given = Given::new(model.params(), noise)?;
+        let Params { coulomb1, coulomb2, .. } = *model.params();
+        let doubts = parameters.iter().enumerate().filter(|(i, _)| FRICTION.contains(i));
+        let doubt = doubts.fold(coulomb1 + coulomb2, |sum, (_, x)| sum + x.deviation);
+        if doubt == A::Scalar::ZERO {
+            given.slow = A::Scalar::ZERO;
+        }
+        let (zeros, factor, misses) = ([A::Scalar::ZERO; 2], A::Scalar::ONE, A::Scalar::ZERO);
+        let torque = given.limits[1];
+        Ok(Self { model, given, torque, of_state: None, parameters, zeros, factor, misses })
     }
 
     /// The estimated state.
@@ -163,6 +192,25 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     #[must_use]
     pub fn params(&self) -> &Params<A::Scalar> {
         self.model.params()
+    }
+
+    /// What the encoders are estimated to say where the angles are 0, rad.
+    #[must_use]
+    pub fn zeros(&self) -> [A::Scalar; 2] {
+        self.zeros
+    }
+
+    /// The torque that is estimated to act, divided by the one that is sent.
+    #[must_use]
+    pub fn torque_factor(&self) -> A::Scalar {
+        self.factor
+    }
+
+    /// How many of about the last hundred measurements no motion of the model explains, so that the
+    /// machine was pushed, or an encoder is broken.
+    #[must_use]
+    pub fn misses(&self) -> A::Scalar {
+        self.misses
     }
 
     /// The standard deviations of the state, rad and rad/s. `None` before a measurement, and after
@@ -180,7 +228,9 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     ///
     /// An angle is not finite.
     pub fn correct(&mut self, angles: [A::Scalar; 2]) -> Result<(), Error> {
-        let measured = State::from([angles[0], angles[1], A::Scalar::ZERO, A::Scalar::ZERO]);
+        let ([angle1, angle2], [zero1, zero2]) = (angles, self.zeros);
+        let rest = A::Scalar::ZERO;
+        let measured = State::from([angle1 - zero1, angle2 - zero2, rest, rest]);
         measured.validate()?;
         let corrected = self.of_state.and_then(|of_state| self.corrected(of_state, angles));
         self.of_state = corrected.or_else(|| self.begin(measured));
@@ -198,7 +248,27 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         let Given { of_angle, of_velocity, limits, .. } = self.given;
         self.torque = limits[1];
         self.model.set_state(state).ok()?;
-        Some(spread([of_angle, of_angle, of_velocity, of_velocity]))
+        // An angle is as wrong as the zero that was taken off.
+        let mut of_angles = [of_angle; 2];
+        for ((i, place), variance) in ZEROS.into_iter().enumerate().zip(&mut of_angles) {
+            let Some(Parameter { deviation, with_state, .. }) = self.parameters.get_mut(place)
+            else {
+                break;
+            };
+            with_state[i] = -*deviation;
+            *variance = of_angle + *deviation * *deviation;
+        }
+        let [of_angle1, of_angle2] = of_angles;
+        Some(spread([of_angle1, of_angle2, of_velocity, of_velocity]))
+    }
+
+    /// What the zero of encoder `i` adds to the covariances of the measured angle: with the state,
+    /// and with itself beside that of the angle.
+    fn of_zero(&self, i: usize) -> ([A::Scalar; 4], A::Scalar) {
+        let zero = ZEROS.get(i).and_then(|place| Some((self.parameters.get(*place)?, *place)));
+        let Some((zero, place)) = zero else { return ([A::Scalar::ZERO; 4], A::Scalar::ZERO) };
+        let own = zero.with_params.get(place).copied().unwrap_or(A::Scalar::ZERO);
+        (zero.with_state.map(|x| x * zero.deviation), own * zero.deviation * zero.deviation)
     }
 
     /// The covariances after a measurement. `None` if a number overflows.
@@ -209,36 +279,59 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         angles: [A::Scalar; 2],
     ) -> Option<Matrix<A::Scalar>> {
         let (zero, one, number) = (A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::from_f64);
-        let Given { of_angle, limits, .. } = self.given;
+        let Given { of_angle, limits, slow, .. } = self.given;
         let mut y: [A::Scalar; 4] = self.model.state().into();
-        let mut params = *self.model.params();
+        let (mut params, mut zeros, mut factor) = (*self.model.params(), self.zeros, self.factor);
+        // Dry friction at rest can be any torque, so a machine at rest says nothing on parameters.
+        // Their covariances with the state follow, as in a Schmidt-Kalman filter.
+        let is_resting = y[2].abs() < slow && y[3].abs() < slow;
         angles.into_iter().enumerate().for_each(|(i, angle)| {
-            let error = wrap(angle - y[i]);
+            let error = wrap(angle - zeros[i] - y[i]);
             let square = error * error;
+            let (mut with_zero, mut of_zero) = self.of_zero(i);
             // The variance of the torque follows the errors.
-            let ratio = square / (of_state[i][i] + of_angle);
+            let ratio = square / (of_angle + sum(of_state[i][i], with_zero[i], of_zero));
             let [rate, most] = FOLLOWS.map(number);
             let change = rate * (saturate(ratio, most) - one);
             self.torque = within(self.torque + self.torque * change, limits);
-            if ratio > number(PUSH * PUSH) {
+            let is_miss = ratio > number(PUSH * PUSH);
+            self.misses = self.misses * number(FORGETS) + if is_miss { one } else { zero };
+            if is_miss {
                 // The velocities are in doubt by as much as the error needs in one step.
                 let of_velocity = square / (params.dt * params.dt);
                 let [of_angle1, of_angle2, ..] =
                     diagonal(&of_state).map(|x| if x > square { x } else { square });
                 of_state = spread([of_angle1, of_angle2, of_velocity, of_velocity]);
                 self.parameters.iter_mut().for_each(|x| x.with_state = [zero; 4]);
+                (with_zero, of_zero) = self.of_zero(i);
             }
 
-            let with_angle = of_state[i];
-            let inverse = one / (with_angle[i] + of_angle);
+            let before = of_state[i][i];
+            let with_angle = plus_scaled(of_state[i], one, with_zero);
+            let inverse = one / (of_angle + sum(before, with_zero[i], of_zero));
             let gain = with_angle.map(|x| x * inverse);
             add_scaled(&mut y, error, &gain);
             add_outer(&mut of_state, -one, &with_angle, &gain);
-            of_state[i][i] = with_angle[i] * of_angle * inverse; // the same, without cancellation
-            let with_angle = self.parameters.map(|parameter| parameter.with_state[i]);
-            let places = estimated(params.numbers_mut()).into_iter().zip(with_angle);
+            if of_zero > zero {
+                // Rounding loses a smaller one.
+                let least = number(LEAST) * of_angle;
+                of_state[i][i] = within(of_state[i][i], [least, before + least]);
+            } else {
+                of_state[i][i] = before * of_angle * inverse; // the same, without cancellation
+            }
+            let deviation = self.parameters.get(ZEROS[i]).map_or(zero, |own| own.deviation);
+            let with_angle = self.parameters.map(|parameter| {
+                let with_zero = parameter.with_params.get(ZEROS[i]).copied().unwrap_or(zero);
+                parameter.with_state[i] + deviation * with_zero
+            });
+            let [zero1, zero2] = &mut zeros;
+            let places = estimated(params.numbers_mut(), [zero1, zero2, &mut factor]);
+            let places = places.into_iter().zip(with_angle);
             for (parameter, (place, x)) in self.parameters.iter_mut().zip(places) {
                 add_scaled(&mut parameter.with_state, -x, &gain);
+                if is_resting {
+                    continue;
+                }
                 let part = x * inverse;
                 for (covariance, x) in parameter.with_params.iter_mut().zip(with_angle) {
                     *covariance = *covariance - part * x;
@@ -246,6 +339,7 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
                 *place = within(*place + parameter.deviation * (part * error), parameter.limits);
             }
         });
+        (self.zeros, self.factor) = (zeros, factor);
         if K > 0 {
             // Parameters that no machine has change nothing.
             let _ = self.model.set_params(params);
@@ -262,6 +356,8 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     /// more than half a turn in the step, so that its velocity does not follow from its angles.
     /// Then the next measurement begins again.
     pub fn predict(&mut self, torque: A::Scalar) -> Result<(), Error> {
+        let sent = torque;
+        let torque = sent * self.factor;
         let mut next = self.model.clone();
         next.step(torque)?;
         if let Some(of_state) = self.of_state.take() {
@@ -273,7 +369,7 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
                     return Err(Error::OutOfRange { name, value, unit, rule });
                 }
             }
-            let of_state = self.predicted(of_state, next.state(), torque)?;
+            let of_state = self.predicted(of_state, next.state(), [sent, torque])?;
             (self.model, self.of_state) = (next, Some(of_state));
         }
         Ok(())
@@ -285,7 +381,7 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         &mut self,
         mut of_state: Matrix<A::Scalar>,
         next: State<A::Scalar>,
-        torque: A::Scalar,
+        [sent, torque]: [A::Scalar; 2],
     ) -> Result<Matrix<A::Scalar>, Error> {
         let [zero, one, half] = [A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::HALF];
         let mut middle = self.model.clone();
@@ -300,14 +396,16 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         add_diagonal(&mut lasting, [dt; 4]);
         let mut after = by_transposed(&lasting, &transpose(&a));
         add_diagonal(&mut after, [one; 4]);
-        let slopes = self.slopes(&middle, [(after1 - before1) / dt, (after2 - before2) / dt]);
+        let accelerations = [(after1 - before1) / dt, (after2 - before2) / dt];
+        let slopes = self.slopes(&middle, accelerations, sent);
         let slopes = slopes.map(|[x1, x2]| apply(&lasting, &[zero, zero, x1, x2]));
 
         of_state = by_transposed(&by_transposed(&after, &of_state), &after);
         for (i, (parameter, slope)) in self.parameters.iter_mut().zip(&slopes).enumerate() {
             let moved = apply(&after, &parameter.with_state);
             let mut change = [zero; 4];
-            for (slope, x) in slopes.iter().zip(parameter.with_params) {
+            // No motion depends on a zero.
+            for (slope, x) in slopes.iter().zip(parameter.with_params).skip(ZEROS.len()) {
                 change = plus_scaled(change, x, *slope);
             }
             parameter.with_state = plus_scaled(moved, one, change);
@@ -332,7 +430,12 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
 
     /// The derivatives of the accelerations \[a1, a2\] of a motion by each parameter, times its
     /// deviation: M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
-    fn slopes(&self, motion: &Pendulum<A>, [a1, a2]: [A::Scalar; 2]) -> [[A::Scalar; 2]; K] {
+    fn slopes(
+        &self,
+        motion: &Pendulum<A>,
+        [a1, a2]: [A::Scalar; 2],
+        sent: A::Scalar,
+    ) -> [[A::Scalar; 2]; K] {
         let (o, one) = (A::Scalar::ZERO, A::Scalar::ONE);
         let mut slopes = [[o; 2]; K];
         if K == 0 {
@@ -351,15 +454,18 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         let on_link2 = -(sin2 * ((one - nips) * square)) - cos2 * a1;
         let of_tip = lc2 * on_link1 - weight1 - l1 * a1;
         let forces: [[A::Scalar; 2]; PARAMETERS] = [
+            [o, o],
+            [o, o],
             [-(lc1 * (weight1 + lc1 * a1)), o],
             [l1 * of_tip, lc2 * (l1 * on_link2 - weight2 - lc2 * (a1 + a2))],
-            [params.mass2 * (of_tip - l1 * a1), params.mass2 * lc2 * on_link2],
             [-a1, o],
             [o, -(a1 + a2)],
             [-v1, o],
             [v2, -v2],
             [-coulomb1, o],
             [coulomb2, -coulomb2],
+            [-sent, sent],
+            [params.mass2 * (of_tip - l1 * a1), params.mass2 * lc2 * on_link2],
             [a1 + a2, a1],
         ];
         let mass = MassMatrix::new::<A>(model, (sin2, cos2));
@@ -379,6 +485,12 @@ fn add_diagonal<S: Real>(m: &mut Matrix<S>, diagonal: [S; 4]) {
 #[inline(never)] // saves flash
 fn by_transposed<S: Real>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
     x.map(|row| y.map(|column| dot(row, column)))
+}
+
+/// The variance of the sum of two numbers, given theirs and their covariance.
+fn sum<S: Real>(one: S, both: S, other: S) -> S {
+    let x = (one + both) + (both + other);
+    if x > S::ZERO { x } else { S::ZERO } // where rounding made it negative
 }
 
 fn within<S: Real>(x: S, [least, most]: [S; 2]) -> S {

@@ -16,6 +16,8 @@ const ON_THE_CIRCLE: f64 = 0.1;
 const IN_A_TIME: f64 = 2e-3;
 /// The deviation of a parameter grows in a time of T by this part of the first one.
 const DRIFT: f64 = 3e-4;
+/// With dry friction, parameters are estimated while a velocity is above this one, 1/T.
+const SLOW: f64 = 0.1;
 
 /// The standard deviations of what an [`Estimator`](super::Estimator) measures and of what acts on
 /// the machine.
@@ -57,6 +59,8 @@ pub(super) struct Given<S> {
     /// The standard deviation of the torque, N m, and the limits of its variance, in parts of it.
     pub(super) torque: S,
     pub(super) limits: [S; 2],
+    /// Parameters are estimated while a velocity is above this one, rad/s.
+    pub(super) slow: S,
 }
 
 impl<S: Real> Given<S> {
@@ -98,6 +102,7 @@ impl<S: Real> Given<S> {
             in_velocity: square(IN_A_TIME / time * Real::sqrt(times)),
             in_parameter: square(DRIFT * Real::sqrt(times)),
             torque: noise.torque_std,
+            slow: S::from_f64(SLOW / time),
             limits: OF_TORQUE.map(|x| S::from_f64(x.min(most))),
         })
     }

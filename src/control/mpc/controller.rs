@@ -2,14 +2,13 @@
 
 use core::f32::consts::TAU;
 
-use crate::arithmetic::{Damped, Fast};
-use crate::control::estimate::{Noise, ParameterEstimator, ParameterStd};
+use super::delay::{Arithmetic, Delay};
+use crate::control::estimate::{KalmanFilter, Noise, ParameterStd, USUAL};
 use crate::control::plan::Knot;
-use crate::error::Error;
+use crate::control::units::Units;
+use crate::error::{Error, Range};
+use crate::math::matrix::check_finite;
 use crate::physics::{Params, State, saturate};
-
-/// The arithmetic of the estimator and of plans.
-pub(super) type Arithmetic = Damped<Fast>;
 
 /// Standard deviations: of an angle, in counts, and of the torque, as a part of the largest.
 const ANGLE: f32 = 0.29;
@@ -19,6 +18,13 @@ const TORQUE: f32 = 0.01;
 const DOUBT: f32 = 0.02;
 const VISCOUS: f32 = 1.0 / 600.0;
 const DRY: f32 = 1.0 / 60.0;
+/// Standard deviations of the encoders' zeros, rad, and of the torque's factor.
+const ZERO: f32 = 0.0175;
+const FACTOR: f32 = 0.1;
+/// Pushes cause fewer misses.
+const MISSES: f32 = 8.0;
+/// Decisions in the machine's time T, so that a plan of 100 is 4.5 T long.
+const DECISIONS: f32 = 22.0;
 
 /// A machine.
 ///
@@ -26,7 +32,8 @@ const DRY: f32 = 1.0 / 60.0;
 /// # use acrobot::Params;
 /// # use acrobot::control::mpc::{Controller, Settings};
 /// let params = Params { dt: 0.002, ..Params::DEFAULT }; // 500 ticks a second
-/// let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
+/// let (counts, delay) = ([4096, 4096], 0.0);
+/// let settings = Settings { params, limit: 6.0, counts, delay, plan_timeout: 1.0 };
 /// assert!(Controller::<100>::new(settings).is_ok());
 /// let without_motor = Settings { limit: 0.0, ..settings };
 /// let error = Controller::<100>::new(without_motor).unwrap_err();
@@ -40,8 +47,27 @@ pub struct Settings {
     pub limit: f32,
     /// The counts of each encoder for a turn.
     pub counts: [i32; 2],
-    /// Ticks from a decision to the next, such as 5 of 2 ms.
-    pub ticks: u32,
+    /// The time from a torque that [`Controller::tick`] returns until it acts, s, with the time
+    /// constant of the motor: 0 if it acts at once.
+    pub delay: f32,
+    /// The torque is 0 while the plan is older than this, s: infinite for never. A slice of
+    /// planning makes it older, so 0.3 s is short.
+    pub plan_timeout: f32,
+}
+
+/// What a [`Controller`] knows beside the state and the parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Report {
+    /// What the encoders are estimated to say where the angles are 0, rad.
+    pub zeros: [f32; 2],
+    /// The torque that is estimated to act, divided by the one that is sent.
+    pub torque_factor: f32,
+    /// How many of the last hundred ticks have angles that no motion of the machine explains: a few
+    /// after a push.
+    pub misses: f32,
+    /// The time since the last plan, s. It is 0 before the first one.
+    pub plan_age: f32,
 }
 
 impl Settings {
@@ -59,8 +85,17 @@ impl Settings {
             damping2: viscous,
             coulomb1: coulomb,
             coulomb2: coulomb,
+            zero1: ZERO,
+            zero2: ZERO,
+            torque_factor: FACTOR,
             ..ParameterStd::default()
         }
+    }
+
+    /// Ticks from a decision to the next.
+    pub(super) fn ticks(&self) -> u32 {
+        let Units { time, .. } = Units::new(&self.params, self.limit);
+        ((time as f32 / DECISIONS / self.params.dt + 0.5) as u32).max(1)
     }
 }
 
@@ -70,7 +105,8 @@ impl Settings {
 /// # use acrobot::Params;
 /// # use acrobot::control::mpc::{Controller, Settings};
 /// let params = Params { dt: 0.002, ..Params::DEFAULT }; // 500 ticks a second
-/// let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 5 };
+/// let (counts, delay) = ([4096, 4096], 0.0);
+/// let settings = Settings { params, limit: 6.0, counts, delay, plan_timeout: 1.0 };
 /// let mut controller = Controller::<100>::new(settings)?;
 /// let torque = controller.tick([512, 0])?; // N m
 /// assert_eq!(torque, 0.0); // there is no plan yet
@@ -80,7 +116,7 @@ impl Settings {
 #[derive(Clone, Debug)]
 pub struct Controller<const N: usize> {
     settings: Settings,
-    pub(super) estimator: ParameterEstimator<Arithmetic>,
+    pub(super) estimator: KalmanFilter<Arithmetic, USUAL>,
     /// The plan, and its next step.
     pub(super) plan: [Knot<f32>; N],
     pub(super) next: usize,
@@ -88,9 +124,13 @@ pub struct Controller<const N: usize> {
     pub(super) last: Knot<f32>,
     pub(super) state: State<f32>,
     pub(super) decisions: u32,
-    /// Ticks to the next decision.
+    /// The decision in which the plan came.
+    pub(super) planned: u32,
+    /// Ticks of a decision, and those since the last one.
     ticks: u32,
+    tick: u32,
     torque: f32,
+    delay: Delay,
 }
 
 impl<const N: usize> Controller<N> {
@@ -106,24 +146,30 @@ impl<const N: usize> Controller<N> {
             ("limit", settings.limit.into(), "N m"),
             ("counts", counts1, "for a turn"),
             ("counts", counts2, "for a turn"),
-            ("ticks", settings.ticks.into(), "for a decision"),
         ] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::OutOfRange { name, value, unit, rule: "finite and above 0" });
-            }
+            Range::AboveZero.check(name, value, unit)?;
         }
+        let (name, value) = ("plan_timeout", settings.plan_timeout);
+        if value.is_nan() || value <= 0.0 {
+            let (value, unit) = (value.into(), "s");
+            return Err(Error::OutOfRange { name, value, unit, rule: "above 0" });
+        }
+        let ticks = settings.ticks();
         let angle = ANGLE * TAU / counts1.min(counts2) as f32;
         let noise = Noise { angle_std: angle, torque_std: TORQUE * settings.limit };
         Ok(Self {
             settings,
-            estimator: ParameterEstimator::new(settings.params, settings.doubt(), noise)?,
+            estimator: KalmanFilter::with_std(settings.params, settings.doubt(), noise)?,
             plan: [Knot::EMPTY; N],
             next: 0,
             last: Knot::EMPTY,
             state: State::HANGING,
             decisions: 0,
-            ticks: 0,
+            planned: 0,
+            ticks,
+            tick: 0,
             torque: 0.0,
+            delay: Delay::new(settings.delay, settings.params.dt, ticks)?,
         })
     }
 
@@ -131,27 +177,58 @@ impl<const N: usize> Controller<N> {
     ///
     /// # Errors
     ///
-    /// The estimate or the torque is not finite. Switch the motor off.
+    /// The estimate or the torque is not finite, or an encoder is dead, stuck or slips: no motion
+    /// of the machine explains what they count. Switch the motor off.
     pub fn tick(&mut self, counts: [i32; 2]) -> Result<f32, Error> {
         let [count1, count2] = counts;
         let [turn1, turn2] = self.settings.counts;
         let angle =
             |count: i32, turn: i32| count.checked_rem(turn).unwrap_or(0) as f32 / turn as f32 * TAU;
         self.estimator.correct([angle(count1, turn1), angle(count2, turn2)])?;
-        if self.ticks == 0 {
-            self.ticks = self.settings.ticks;
-            self.decisions = self.decisions.wrapping_add(1);
-            self.state = self.estimator.state();
-            // After the plan its last gain holds.
-            if let Some(knot) = self.plan.get(self.next) {
-                self.last = *knot;
-                self.next += 1;
-            }
-            self.torque = saturate(self.last.follow(self.state), self.settings.limit);
+        let misses = self.estimator.misses();
+        if misses > MISSES {
+            let (name, value, unit) = ("misses", misses.into(), "of the last hundred ticks");
+            return Err(Error::OutOfRange { name, value, unit, rule: "at most 8" });
         }
-        self.ticks = self.ticks.saturating_sub(1);
-        self.estimator.predict(self.torque)?;
+        if self.tick == 0 {
+            self.decide()?;
+        }
+        self.estimator.predict(self.delay.acting(self.tick))?;
+        self.tick = (self.tick + 1) % self.ticks.max(1);
         Ok(self.torque)
+    }
+
+    fn decide(&mut self) -> Result<(), Error> {
+        self.decisions = self.decisions.wrapping_add(1);
+        let estimator = &self.estimator;
+        let (params, factor) = (estimator.params(), estimator.torque_factor());
+        self.state = self.delay.predict(params, factor, estimator.state())?;
+        // After the plan its last gain holds.
+        if let Some(knot) = self.plan.get(self.next) {
+            self.last = *knot;
+            self.next += 1;
+        }
+        let torque = saturate(self.last.follow(self.state) / factor, self.settings.limit);
+        check_finite("torque", &[torque])?;
+        let is_late = self.report().plan_age > self.settings.plan_timeout;
+        self.torque = if is_late { 0.0 } else { torque };
+        self.delay.send(self.torque);
+        Ok(())
+    }
+
+    /// What the controller knows beside the state and the parameters.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let decisions = match self.planned {
+            0 => 0,
+            planned => self.decisions.wrapping_sub(planned),
+        };
+        Report {
+            zeros: self.estimator.zeros(),
+            torque_factor: self.estimator.torque_factor(),
+            misses: self.estimator.misses(),
+            plan_age: decisions as f32 * self.ticks as f32 * self.settings.params.dt,
+        }
     }
 
     /// The estimated state.
@@ -160,7 +237,7 @@ impl<const N: usize> Controller<N> {
         self.estimator.state()
     }
 
-    /// The estimated parameters. While the machine stands, its masses drift, up to 8 %.
+    /// The estimated parameters. While the machine stands, they rest.
     #[must_use]
     pub fn params(&self) -> &Params<f32> {
         self.estimator.params()

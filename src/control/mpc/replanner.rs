@@ -2,9 +2,12 @@
 
 use core::iter::{once, repeat};
 
-use super::controller::{Arithmetic, Controller, Settings};
+use super::controller::{Controller, Settings};
+use super::delay::Arithmetic;
 use crate::control::plan::{Cost, Knot, Planner, Problem};
+use crate::control::units::Units;
 use crate::error::Error;
+use crate::math::Real;
 use crate::physics::{Params, Pendulum, State, saturate};
 
 /// The part of the motor's torque that plans use. The rest corrects deviations.
@@ -13,6 +16,14 @@ const PLANNED: f32 = 0.9;
 /// weights of the torque and of the time below.
 const ITERATIONS: u32 = 4;
 const GENTLE: [f32; 2] = [16.0, 2.5];
+/// The largest velocities of plans: so many times 1/T, and √(F / I2) for link 2 with the inertia
+/// I2, which also turns by at most so much in a decision, rad.
+const FASTEST: f32 = 4.5;
+const TURNED: f32 = 1.0;
+/// What velocities cost, 1/T for 1/T². Without this a plan that holds waits, and corrects late.
+const SLOW: f32 = 0.01;
+/// Plans ignore dry friction below this part of the motor's torque.
+const SMOOTH: f32 = 0.002;
 /// After so many slices, one takes the estimated parameters.
 const SLICES: u32 = 20;
 
@@ -28,6 +39,14 @@ enum Work {
     Due(bool),
 }
 
+/// A machine whose steps are decisions.
+#[derive(Clone, Copy, Debug)]
+struct Machine {
+    params: Params<f32>,
+    /// The largest torque that acts, N m.
+    limit: f32,
+}
+
 /// What the main loop does. It needs 0.8 KB beside a plan of 44 bytes a decision, and several KB of
 /// stack.
 ///
@@ -35,7 +54,8 @@ enum Work {
 /// # use acrobot::Params;
 /// # use acrobot::control::mpc::{Controller, Replanner, Settings};
 /// # let params = Params { dt: 0.01, ..Params::DEFAULT };
-/// let settings = Settings { params, limit: 6.0, counts: [4096, 4096], ticks: 1 };
+/// let (counts, delay) = ([4096, 4096], 0.0);
+/// let settings = Settings { params, limit: 6.0, counts, delay, plan_timeout: 1.0 };
 /// let mut controller = Controller::<100>::new(settings)?;
 /// let mut replanner = Replanner::new(settings)?;
 /// for slice in 0..9 {
@@ -47,13 +67,14 @@ enum Work {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Replanner<const N: usize> {
+    /// The largest torque that is sent, N m.
     limit: f32,
     /// Ticks of a decision.
     ticks: f32,
     planner: Planner<Arithmetic>,
-    /// The planner's parameters, and those for the next one.
-    params: Params<f32>,
-    estimated: Params<f32>,
+    /// The machine of the planner, and of the next one.
+    machine: Machine,
+    estimated: Machine,
     work: Work,
     slices: u32,
     /// The plan, its first state, and the decision with which it begins.
@@ -72,15 +93,17 @@ impl<const N: usize> Replanner<N> {
     ///
     /// The parameters have no regulator.
     pub fn new(settings: Settings) -> Result<Self, Error> {
-        let ticks = settings.ticks as f32;
-        let params = of_decisions(&settings.params, ticks);
-        let planner = planner(params, settings.limit)?;
+        let Settings { mut params, limit, .. } = settings;
+        let ticks = settings.ticks() as f32;
+        params.dt *= ticks;
+        let machine = Machine { params, limit };
+        let planner = planner(machine)?;
         Ok(Self {
-            limit: settings.limit,
+            limit,
             ticks,
             planner,
-            params,
-            estimated: settings.params,
+            machine,
+            estimated: machine,
             work: Work::Model,
             slices: 0,
             plan: [Knot::EMPTY; N],
@@ -108,12 +131,16 @@ impl<const N: usize> Replanner<N> {
             if is_good {
                 controller.plan = self.plan;
                 controller.next = late as usize;
+                controller.planned = now;
             }
         }
         self.slices += 1;
         if self.slices == SLICES {
             self.slices = 0;
-            self.estimated = *controller.params();
+            let estimator = &controller.estimator;
+            self.estimated.params = *estimator.params();
+            self.estimated.params.dt *= self.ticks;
+            self.estimated.limit = self.limit * estimator.torque_factor();
             self.work = Work::Model;
             return;
         }
@@ -130,10 +157,11 @@ impl<const N: usize> Replanner<N> {
         // The first step is the one that it takes now, and after the plan it repeats the last.
         let steps = once(&controller.last).chain(rest);
         let held = rest.last().unwrap_or(&controller.last);
-        let mut model = Pendulum::<Arithmetic>::new(self.params, controller.state)?;
+        let Machine { params, limit } = self.machine;
+        let mut model = Pendulum::<Arithmetic>::new(params, controller.state)?;
         let ahead = self.ahead as usize;
         for step in steps.clone().chain(repeat(held)).take(ahead) {
-            model.step(saturate(step.follow(model.state()), self.limit))?;
+            model.step(saturate(step.follow(model.state()), limit))?;
         }
         self.start = model.state();
         self.begin = self.before.wrapping_add(self.ahead).wrapping_sub(1);
@@ -148,9 +176,8 @@ impl<const N: usize> Replanner<N> {
         match self.work {
             // Parameters that no plan can have keep the model before.
             Work::Model => {
-                let params = of_decisions(&self.estimated, self.ticks);
-                if let Ok(planner) = planner(params, self.limit) {
-                    (self.planner, self.params) = (planner, params);
+                if let Ok(planner) = planner(self.estimated) {
+                    (self.planner, self.machine) = (planner, self.estimated);
                 }
             }
             Work::Plan => {
@@ -162,16 +189,26 @@ impl<const N: usize> Replanner<N> {
     }
 }
 
-/// Parameters whose steps are those of decisions.
-fn of_decisions(params: &Params<f32>, ticks: f32) -> Params<f32> {
-    Params { dt: params.dt * ticks, ..*params }
-}
-
-fn planner(params: Params<f32>, limit: f32) -> Result<Planner<Arithmetic>, Error> {
-    let (limit, [torque, below]) = (PLANNED * limit, GENTLE);
-    let mut problem = Problem::swing_up(params, limit)?;
-    let Cost { torque: torque_weight, below: below_weight, .. } = &mut problem.cost;
-    *torque_weight *= torque;
-    *below_weight *= below;
+#[inline(never)] // saves flash
+fn planner(Machine { mut params, limit }: Machine) -> Result<Planner<Arithmetic>, Error> {
+    // Little dry friction lets no link stick: the regulator of a link that sticks would be wrong.
+    for dry in [&mut params.coulomb1, &mut params.coulomb2] {
+        if *dry < SMOOTH * limit {
+            *dry = 0.0;
+        }
+    }
+    let Units { time, force, .. } = Units::new(&params, limit);
+    let [_, _, link2, _] = params.inertias();
+    let fastest = force / f64::from(link2);
+    params.max_velocity1 = FASTEST / time as f32;
+    params.max_velocity2 = (FASTEST * Real::sqrt(fastest) as f32).min(TURNED / params.dt);
+    let mut problem = Problem::swing_up(params, PLANNED * limit)?;
+    let Cost { q, torque, below, .. } = &mut problem.cost;
+    let [torque_factor, below_factor] = GENTLE;
+    *torque *= torque_factor;
+    *below *= below_factor;
+    let [.., row1, row2] = q;
+    row1[2] = SLOW * time as f32;
+    row2[3] = SLOW * time as f32;
     Planner::new(&problem)
 }

@@ -68,6 +68,9 @@ fn estimates_are_those_of_machines() {
                 coulomb1: params.coulomb1,
                 coulomb2: params.coulomb2,
                 rotor: A::Scalar::from_f64(params.rotor.to_f64().abs()),
+                zero1: A::Scalar::from_f64(0.1),
+                zero2: A::Scalar::ZERO,
+                torque_factor: A::Scalar::from_f64(0.2),
             };
             let mut of_params = ParameterEstimator::<A>::new(params, std, noise).unwrap();
             for (angles, torque) in ticks {

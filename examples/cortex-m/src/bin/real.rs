@@ -6,31 +6,31 @@
 #![no_main]
 
 use core::cell::RefCell;
+use core::f32::consts::TAU;
 
 use acrobot::arithmetic::Damped;
-
 use acrobot::control::mpc::{Controller, Replanner, Settings};
-use acrobot::{Error, Fast, Params};
+use acrobot::physics::Pendulum;
+use acrobot::{Error, Fast, Params, State};
 use acrobot_cortex_m::ram;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{Peripherals, SCB, SYST};
 use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
-use machine::{Machine, realaigym};
+use machine::Hardware;
 use semihosting::{println, process};
 
 /// Counts of SysTick from tick to tick, and instructions of a count under QEMU's `-icount shift=0`:
 /// those of an STM32F4 at 168 MHz in 2 ms, with 1.9 cycles an instruction.
 const PERIOD: u32 = 4_420;
 const PER_COUNT: u32 = 40;
-/// Counts of each encoder for a turn, and the standard deviation of the torque, N m.
-const COUNTS: [i32; 2] = [4096, 4096];
-const NOISE: f64 = 0.02;
 /// Ticks before the push, and after it.
 const TICKS: u32 = 2500;
+/// How much it changes both velocities, rad/s.
+const PUSH: [f32; 2] = [1.0, -5.0];
 
 struct Real {
-    machine: Machine<Damped<Fast>>,
+    machine: Pendulum<Damped<Fast>>,
     controller: Controller<100>,
     ticks: u32,
     /// The tick after which the acrobot is upright: before the push, and after it.
@@ -42,10 +42,12 @@ struct Real {
 static REAL: Mutex<RefCell<Option<Real>>> = Mutex::new(RefCell::new(None));
 
 fn start() -> Result<Replanner<100>, Error> {
-    let machine = Machine::new(realaigym(), COUNTS, 0, NOISE, 1)?;
+    let Hardware { params, counts, .. } = Hardware::realaigym();
+    let start = State { theta1: 0.05, ..State::HANGING };
+    let machine = Pendulum::new(params.cast(), start)?;
     let (damping1, damping2, coulomb1, coulomb2) = (0.0, 0.0, 0.0, 0.0);
-    let params = Params { damping1, damping2, coulomb1, coulomb2, ..machine.params() };
-    let settings = Settings { params: params.cast(), limit: 6.0, counts: COUNTS, ticks: 5 };
+    let params = Params { damping1, damping2, coulomb1, coulomb2, ..params }.cast();
+    let settings = Settings { params, limit: 6.0, counts, delay: 0.0, plan_timeout: 1.0 };
     let controller = Controller::new(settings)?;
     let real = Real { machine, controller, ticks: 0, upright: [0; 2], slowest: 0 };
     critical_section::with(|cs| REAL.replace(cs, Some(real)));
@@ -104,16 +106,24 @@ fn SysTick() {
 }
 
 fn tick(real: &mut Real) -> Result<(), Error> {
-    let counts = real.machine.counts();
+    let State { theta1, theta2, .. } = real.machine.state();
+    let counts = [theta1, theta2].map(|angle| {
+        let count = angle / TAU * 4096.0;
+        (count + 0.5_f32.copysign(count)) as i32
+    });
     let before = SYST::get_current();
     let torque = real.controller.tick(counts)?;
     real.slowest = real.slowest.max((before + PERIOD - SYST::get_current()) % PERIOD);
     real.machine.step(torque)?;
+    let mut state = real.machine.state();
     if real.ticks == TICKS {
-        real.machine.push(6.0)?;
+        state.dtheta1 += PUSH[0];
+        state.dtheta2 += PUSH[1];
+        real.machine.set_state(state)?;
     }
     let upright = &mut real.upright[usize::from(real.ticks >= TICKS)];
-    if real.machine.lean() > 0.1 {
+    let [lean1, lean2, ..] = state.deviation_from(State::UPRIGHT);
+    if lean1.abs() > 0.1 || lean2.abs() > 0.1 {
         *upright = real.ticks % TICKS + 1;
     }
     real.ticks += 1;

@@ -10,24 +10,19 @@
 
 use std::f64::consts::TAU;
 
-use acrobot::arithmetic::Damped;
 use acrobot::control::identify::{Regression, Sample};
-use acrobot::control::mpc::{Controller, Replanner, Settings};
+use acrobot::control::mpc::Settings;
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::{Error, Params, Portable};
+use acrobot::{Error, Params};
 use clap::Parser;
-use machine::{Machine, realaigym};
+use machine::{Hardware, Machine, Rehearsal};
 use rayon::prelude::*;
 
-/// Counts of each encoder for a turn, and the standard deviation of the torque, N m.
-const COUNTS: [i32; 2] = [4096, 4096];
-const NOISE: f64 = 0.02;
-
-/// Ticks of 2 ms between two pushes.
-const TICKS: u32 = 5000;
-/// An acrobot is upright within these angles, rad, for so many ticks before a push and the end.
+/// The time between two pushes, s.
+const SECONDS: f64 = 10.0;
+/// An acrobot is upright within these angles, rad, for so long before a push and the end, s.
 const UPRIGHT: f64 = 0.1;
-const HELD: u32 = 500;
+const HELD: f64 = 1.0;
 /// How much the pushes change both velocities at most, rad/s.
 const PUSHES: [f64; 3] = [1.0, 6.0, 0.0];
 
@@ -45,10 +40,6 @@ struct Options {
     slice: u32,
 }
 
-fn machine(seed: u64) -> Result<Machine<Damped<Portable>>, Error> {
-    Machine::new(realaigym(), COUNTS, 0, NOISE, seed)
-}
-
 /// What the controller believes of a machine, given the true parameters.
 type Model = fn(Params, u64) -> Result<Params, Error>;
 
@@ -57,21 +48,18 @@ type Motion = [Option<f64>; PUSHES.len()];
 
 /// Shakes a machine for 10 s with up to 3 N m, and identifies it from what the encoders counted.
 fn identified(truth: Params, seed: u64) -> Result<Params, Error> {
-    let (mut machine, mut rng) = (machine(seed)?, Pcg64::new(seed));
+    let (hardware, mut rng) = (Hardware::realaigym(), Pcg64::new(seed));
+    let mut machine = Machine::new(hardware, seed)?;
     let (mut recording, mut torque, mut left) = (Vec::new(), 0.0, 0.0);
-    let mut angles = [0.0; 2];
-    for _ in 0..TICKS {
+    for _ in 0..(SECONDS / truth.dt) as u32 {
         if left <= 0.0 {
             (torque, left) = (uniform(&mut rng, -3.0, 3.0) as f32, uniform(&mut rng, 0.05, 0.4));
         }
         left -= truth.dt;
-        // A real encoder counts on after a turn.
-        for (angle, count) in angles.iter_mut().zip(machine.counts()) {
-            let turns = f64::from(count) / f64::from(COUNTS[0]) - *angle / TAU;
-            *angle += (turns - turns.round()) * TAU;
-        }
+        let turn = f64::from(hardware.counts[0]);
+        let angles = machine.counts().map(|count| (f64::from(count) + 0.5) / turn * TAU);
         recording.push(Sample { angles, torques: [0.0, torque.into()] });
-        machine.step(torque)?;
+        machine.step(torque);
     }
     let mut regression = Regression::EMPTY;
     regression.add(&recording, truth.dt, truth.gravity, 2, 250)?;
@@ -80,27 +68,15 @@ fn identified(truth: Params, seed: u64) -> Result<Params, Error> {
 }
 
 fn control(seed: u64, slice: u32, model: Model) -> Result<Motion, Error> {
-    let mut machine = machine(seed)?;
-    let params = model(machine.params(), seed)?.cast();
-    let settings = Settings { params, limit: 6.0, counts: COUNTS, ticks: 5 };
-    let mut controller = Controller::<100>::new(settings)?;
-    let mut replanner = Replanner::new(settings)?;
-    let mut motion = Motion::default();
+    let hardware = Hardware::realaigym();
+    let params = model(hardware.params, seed)?.cast();
+    let settings =
+        Settings { params, limit: 6.0, counts: hardware.counts, delay: 0.0, plan_timeout: 1.0 };
+    let mut rehearsal = Rehearsal::new(Machine::new(hardware, seed)?, settings, slice)?;
+    let (mut motion, mut rng) = (Motion::default(), Pcg64::new(seed + 1000));
     for (time, push) in motion.iter_mut().zip(PUSHES) {
-        let mut upright = 0;
-        for tick in 0..TICKS {
-            let torque = controller.tick(machine.counts())?;
-            if tick % slice == 0 {
-                replanner.exchange(&mut controller);
-                replanner.work();
-            }
-            machine.step(torque)?;
-            if machine.lean() > UPRIGHT {
-                upright = tick + 1;
-            }
-        }
-        *time = (upright + HELD <= TICKS).then_some(f64::from(upright) * 0.002);
-        machine.push(push)?;
+        *time = rehearsal.run(SECONDS, UPRIGHT, HELD)?;
+        rehearsal.machine.push([(); 2].map(|()| uniform(&mut rng, -push, push)));
     }
     Ok(motion)
 }

@@ -27,6 +27,9 @@ _ESTIMATED = (
     "COULOMB_1",
     "COULOMB_2",
     "ROTOR",
+    "ZERO_1",
+    "ZERO_2",
+    "TORQUE_FACTOR",
 )
 
 
@@ -36,7 +39,9 @@ class Estimator:
     The model has the parameters of ``env``. ``angle_std``, rad, and ``torque_std``, N m, are the
     standard deviations of the noise; an encoder of n counts a turn has 1.8 / n. Parameters that
     are named in ``parameter_std``, with their standard deviations, are estimated too: masses,
-    moments of inertia, the length of link 1, frictions and ``ROTOR``.
+    moments of inertia, the length of link 1, frictions, ``ROTOR``, and the instruments: ``ZERO_1``
+    and ``ZERO_2``, what the encoders say where the angles are 0, and ``TORQUE_FACTOR``, the torque
+    that acts, divided by the one of :meth:`predict`.
 
     In each ``dt`` call :meth:`correct`, decide, and call :meth:`predict`.
     """
@@ -77,6 +82,16 @@ class Estimator:
         """The standard deviations of the state. ``None`` before a measurement."""
         found = self._native.state_std()
         return None if found is None else np.array(found)
+
+    @property
+    def zeros(self) -> Floats:
+        """What the encoders are estimated to say where the angles are 0, rad."""
+        return np.array(self._native.zeros())
+
+    @property
+    def torque_factor(self) -> float:
+        """The torque that is estimated to act, divided by the one of :meth:`predict`."""
+        return self._native.torque_factor()
 
     @property
     def params(self) -> dict[str, Any]:
