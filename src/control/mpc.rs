@@ -17,7 +17,7 @@
 //! use acrobot::physics::Pendulum;
 //! use acrobot::{Params, Portable, State};
 //!
-//! // RealAIGym's acrobot without dry friction stands for encoders and motor.
+//! // RealAIGym's acrobot stands for encoders and motor.
 //! let params = Params {
 //!     length1: 0.2,
 //!     length2: 0.3,
@@ -25,6 +25,8 @@
 //!     mass2: 0.626,
 //!     center_of_mass1: 0.2,
 //!     center_of_mass2: 0.256,
+//!     coulomb1: 0.16,
+//!     coulomb2: 0.12,
 //!     dt: 0.002,
 //!     ..Params::DEFAULT
 //! };

@@ -339,10 +339,12 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
                 *place = within(*place + parameter.deviation * (part * error), parameter.limits);
             }
         });
-        (self.zeros, self.factor) = (zeros, factor);
         if K > 0 {
-            // Parameters that no machine has change nothing.
+            // What no machine has changes nothing.
             let _ = self.model.set_params(params);
+            if check_finite("", &[zeros[0], zeros[1], factor]).is_ok() {
+                (self.zeros, self.factor) = (zeros, factor);
+            }
         }
         self.model.set_state(y.into()).ok()?;
         check_finite("", of_state.as_flattened()).is_ok().then_some(of_state)
