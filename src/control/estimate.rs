@@ -3,6 +3,7 @@
 mod estimator;
 mod noise;
 mod parameter_std;
+mod predicted;
 
 pub use estimator::{Estimator, KalmanFilter, ParameterEstimator};
 pub use noise::Noise;

@@ -12,26 +12,17 @@ use super::parameter_std::{
     FRICTION, PARAMETERS, Parameter, ParameterStd, ROTOR, ZEROS, estimated,
 };
 use crate::arithmetic::Arithmetic;
-use crate::control::model::LinearModel;
-use crate::control::model::partials::MassMatrix;
 use crate::error::{Error, Range};
 use crate::math::Real;
-use crate::math::matrix::{
-    Matrix, add_outer, add_scaled, apply, check_finite, diagonal, dot, spread, symmetrize,
-    transpose,
-};
+use crate::math::matrix::{Matrix, add_outer, add_scaled, check_finite, diagonal, spread};
 use crate::math::sealed::Sealed as _;
-use crate::physics::{
-    FIELDS, Params, Pendulum, State, coulomb_friction, directions, plus_scaled, saturate, wrap,
-};
+use crate::physics::{FIELDS, Params, Pendulum, State, plus_scaled, saturate, wrap};
 
 /// An angle is farther than so many standard deviations from its prediction only after a push.
 const PUSH: f64 = 6.0;
 /// The variance of the torque follows the errors of about 1/0.02 = 50 measurements, of which none
 /// counts for more than so many variances.
 const FOLLOWS: [f64; 2] = [0.02, 12.0];
-/// What rounding to `f32` can add to an angle in a step: a standard deviation, rad.
-const IN_A_STEP: f64 = 1e-6;
 /// An estimated parameter differs from the given one by at most so many deviations.
 const MOST: f64 = 4.0;
 /// After a measurement the count of those that no motion explains has this part left.
@@ -90,13 +81,13 @@ pub type ParameterEstimator<A> = KalmanFilter<A, PARAMETERS>;
     ))
 )]
 pub struct KalmanFilter<A: Arithmetic, const K: usize> {
-    model: Pendulum<A>,
-    given: Given<A::Scalar>,
+    pub(super) model: Pendulum<A>,
+    pub(super) given: Given<A::Scalar>,
     /// The variance of the torque, in parts of the given one.
-    torque: A::Scalar,
+    pub(super) torque: A::Scalar,
     /// The covariances of the state. `None` before a measurement, and after an overflow.
     of_state: Option<Matrix<A::Scalar>>,
-    parameters: [Parameter<A::Scalar, K>; K],
+    pub(super) parameters: [Parameter<A::Scalar, K>; K],
     /// What the encoders say where the angles are 0, rad, and the part of a torque that acts.
     zeros: [A::Scalar; 2],
     factor: A::Scalar,
@@ -376,117 +367,6 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         }
         Ok(())
     }
-
-    /// The covariances after a step to the state `next`.
-    #[expect(clippy::indexing_slicing, reason = "i is below K or 4")]
-    fn predicted(
-        &mut self,
-        mut of_state: Matrix<A::Scalar>,
-        next: State<A::Scalar>,
-        [sent, torque]: [A::Scalar; 2],
-    ) -> Result<Matrix<A::Scalar>, Error> {
-        let [zero, one, half] = [A::Scalar::ZERO, A::Scalar::ONE, A::Scalar::HALF];
-        let mut middle = self.model.clone();
-        let [theta1, theta2, before1, before2]: [A::Scalar; 4] = middle.state().into();
-        let [_, _, after1, after2]: [A::Scalar; 4] = next.into();
-        let [v1, v2] = [(before1 + after1) * half, (before2 + after2) * half];
-        let (dt, half_dt) = (middle.params().dt, middle.model().constants.half_dt);
-        middle.set_state([theta1 + half_dt * v1, theta2 + half_dt * v2, v1, v2].into())?;
-        // What a rate in the middle of the step changes until its end, to the second order in dt.
-        let LinearModel { a, b } = middle.linearize(torque)?;
-        let mut lasting = a.map(|row| row.map(|x| dt * (half_dt * x)));
-        add_diagonal(&mut lasting, [dt; 4]);
-        let mut after = by_transposed(&lasting, &transpose(&a));
-        add_diagonal(&mut after, [one; 4]);
-        let accelerations = [(after1 - before1) / dt, (after2 - before2) / dt];
-        let slopes = self.slopes(&middle, accelerations, sent);
-        let slopes = slopes.map(|[x1, x2]| apply(&lasting, &[zero, zero, x1, x2]));
-
-        of_state = by_transposed(&by_transposed(&after, &of_state), &after);
-        for (i, (parameter, slope)) in self.parameters.iter_mut().zip(&slopes).enumerate() {
-            let moved = apply(&after, &parameter.with_state);
-            let mut change = [zero; 4];
-            // No motion depends on a zero.
-            for (slope, x) in slopes.iter().zip(parameter.with_params).skip(ZEROS.len()) {
-                change = plus_scaled(change, x, *slope);
-            }
-            parameter.with_state = plus_scaled(moved, one, change);
-            // Its transpose follows when the matrix becomes symmetric.
-            add_outer(&mut of_state, one + one, slope, &plus_scaled(moved, half, change));
-            parameter.with_params[i] = parameter.with_params[i] + self.given.in_parameter;
-        }
-        let b = apply(&lasting, &b).map(|x| x * self.given.torque);
-        add_outer(&mut of_state, self.torque, &b, &b);
-        symmetrize(&mut of_state);
-        check_finite("covariances", of_state.as_flattened())?;
-        let (angle, velocity) =
-            (A::Scalar::from_f64(IN_A_STEP * IN_A_STEP), self.given.in_velocity);
-        // At opt-level z a `for` loop would keep a check of the index, here and in `corrected`.
-        [angle, angle, velocity, velocity].into_iter().enumerate().for_each(|(i, noise)| {
-            // Rounding may have made it negative.
-            let own = if of_state[i][i] > zero { of_state[i][i] } else { zero };
-            of_state[i][i] = own + noise;
-        });
-        Ok(of_state)
-    }
-
-    /// The derivatives of the accelerations \[a1, a2\] of a motion by each parameter, times its
-    /// deviation: M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
-    fn slopes(
-        &self,
-        motion: &Pendulum<A>,
-        [a1, a2]: [A::Scalar; 2],
-        sent: A::Scalar,
-    ) -> [[A::Scalar; 2]; K] {
-        let (o, one) = (A::Scalar::ZERO, A::Scalar::ONE);
-        let mut slopes = [[o; 2]; K];
-        if K == 0 {
-            return slopes;
-        }
-        let (model, sines) = (motion.model(), motion.sin_cos());
-        let State { dtheta1: v1, dtheta2: v2, .. } = motion.state();
-        let (params, nips) = (&model.params, model.constants.nips);
-        let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
-        let [_, (sin2, cos2)] = sines;
-        let [weight1, weight2] = directions(sines).map(|(sin, _)| params.gravity * sin);
-        let [coulomb1, coulomb2] = [v1, v2].map(|v| coulomb_friction::<A, A::Scalar>(model, v).0);
-        let (square, sum) = (v1 * v1, v1 + v2);
-        // Of l1 lc2 m2: what the links do to each other.
-        let on_link1 = sin2 * (sum * sum - nips * square) - cos2 * (a1 + a2);
-        let on_link2 = -(sin2 * ((one - nips) * square)) - cos2 * a1;
-        let of_tip = lc2 * on_link1 - weight1 - l1 * a1;
-        let forces: [[A::Scalar; 2]; PARAMETERS] = [
-            [o, o],
-            [o, o],
-            [-(lc1 * (weight1 + lc1 * a1)), o],
-            [l1 * of_tip, lc2 * (l1 * on_link2 - weight2 - lc2 * (a1 + a2))],
-            [-a1, o],
-            [o, -(a1 + a2)],
-            [-v1, o],
-            [v2, -v2],
-            [-coulomb1, o],
-            [coulomb2, -coulomb2],
-            [-sent, sent],
-            [params.mass2 * (of_tip - l1 * a1), params.mass2 * lc2 * on_link2],
-            [a1 + a2, a1],
-        ];
-        let mass = MassMatrix::new::<A>(model, (sin2, cos2));
-        for ((slope, forces), parameter) in slopes.iter_mut().zip(forces).zip(&self.parameters) {
-            *slope = mass.solve(forces).map(|x| x * parameter.deviation);
-        }
-        slopes
-    }
-}
-
-#[expect(clippy::indexing_slicing, reason = "i is below 4")]
-fn add_diagonal<S: Real>(m: &mut Matrix<S>, diagonal: [S; 4]) {
-    diagonal.into_iter().enumerate().for_each(|(i, x)| m[i][i] = m[i][i] + x);
-}
-
-/// x yᵀ.
-#[inline(never)] // saves flash
-fn by_transposed<S: Real>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
-    x.map(|row| y.map(|column| dot(row, column)))
 }
 
 /// The variance of the sum of two numbers, given theirs and their covariance.
