@@ -153,6 +153,9 @@ fn zeroed_encoders_do_not_stop_it() {
 fn bad_settings_are_rejected() {
     let good = known(&Hardware::realaigym());
     let params = Params { mass1: -1.0, ..good.params };
+    // A tick so short that a decision has more than 2³² of them.
+    let short = Params { dt: 1e-20, ..good.params };
+    assert!(Controller::<100>::new(Settings { params: short, ..good }).is_ok());
     for (bad, rule) in [
         (
             Settings { counts: [4096, 0], ..good },

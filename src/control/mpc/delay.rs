@@ -27,7 +27,7 @@ impl Delay {
     pub(super) fn new(delay: f32, dt: f32, ticks: u32) -> Result<Self, Error> {
         let (name, value, unit, late) = ("delay", delay.into(), "s", delay / dt);
         Range::AtLeastZero.check(name, value, unit)?;
-        if late > ((SENT - 2) as u32 * ticks) as f32 {
+        if late > (SENT - 2) as f32 * ticks as f32 {
             let rule = "at most 14/22 of the machine's time, in";
             return Err(Error::OutOfRange { name, value, unit, rule });
         }
@@ -46,7 +46,7 @@ impl Delay {
             let decisions = late.saturating_sub(tick).div_ceil(self.ticks.max(1));
             self.sent.get(decisions as usize).copied().unwrap_or(0.0)
         };
-        let (later, earlier) = (sent(self.late), sent(self.late + 1));
+        let (later, earlier) = (sent(self.late), sent(self.late.saturating_add(1)));
         later + self.part * (earlier - later)
     }
 
