@@ -7,9 +7,9 @@ import { fileURLToPath } from "node:url";
 import { launch } from "../../../bindings/npm/browser.mjs";
 import { decodeRun } from "../dist/link.js";
 
-/* global click, pull, select */
+/* global click, pull, release, select */
 
-/** Defines functions that act: `pull` pulls the tip to the side for half a second. */
+/** Defines functions that act: `pull` pulls the tip to the side, until `release`. */
 const help = () => {
   window.click = (id) => document.querySelector(id).click();
   window.select = (id, value) => {
@@ -25,10 +25,11 @@ const help = () => {
     }));
     send("pointerdown", 0.5);
     send("pointermove", 0.8);
-    return new Promise((done) => setTimeout(() => done(send("lostpointercapture", 0.8)), 500));
+    window.release = () => send("lostpointercapture", 0.8);
   };
 };
 const holds = () => /^[1-9]\d*\.\d s$/.test(document.querySelector("#return").textContent);
+const falls = () => document.querySelector("#return").textContent === "0.0 s";
 const loads = (page) =>
   page.waitForFunction(() => document.querySelector("#balance:enabled") !== null);
 /** The text of an element after the next picture, which the page writes it with. */
@@ -52,8 +53,8 @@ test("the planner holds, is pulled down, and recovers; the link has the same bit
     });
     await page.waitForFunction(holds);
     await page.evaluate(() => (select("#pace", "1"), pull()));
-    assert.equal(await page.evaluate(holds), false);
-    await page.evaluate(() => select("#pace", "4"));
+    await page.waitForFunction(falls);
+    await page.evaluate(() => (release(), select("#pace", "4")));
     await page.waitForFunction(holds);
     await page.evaluate(() => {
       click("#pause");
