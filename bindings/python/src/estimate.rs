@@ -108,10 +108,10 @@ pub fn identify(
 }
 
 /// Names and what they stand for.
-type Named<T> = Vec<(&'static str, T)>;
+pub type Named<T> = Vec<(&'static str, T)>;
 
 /// The parameters that are one number, by Python's names.
-fn named_numbers(params: &Params) -> Named<f64> {
+pub fn named_numbers(params: &Params) -> Named<f64> {
     let numbers = NAMES.into_iter().zip(params.numbers()).map(|(name, (_, number))| (name, number));
     numbers.filter(|(name, _)| *name != "AVAIL_TORQUE").collect()
 }

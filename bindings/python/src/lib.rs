@@ -4,6 +4,7 @@ mod batch;
 mod control;
 mod engine;
 mod estimate;
+mod mpc;
 mod pool;
 mod single;
 
@@ -45,6 +46,8 @@ mod _native {
     use super::control::{Planner, SwingUp, compute, plan_torque};
     #[pymodule_export]
     use super::estimate::{Estimator, identify};
+    #[pymodule_export]
+    use super::mpc::{Controller, Replanner};
     #[pymodule_export]
     use super::single::Acrobot;
     use super::*;

@@ -65,6 +65,9 @@ PLANNER = control.Planner(6.0, FRICTION)
 PLAN = PLANNER.plan(REST, steps=250)
 NOISE = {"angle_std": 1e-3, "torque_std": 0.05}
 ESTIMATED, ESTIMATOR = control.estimate._ESTIMATED, control.Estimator(**NOISE)
+SETTINGS = {"limit": 6.0, "counts": [4096, 4096], "delay": 0.01, "plan_timeout": 1.0}
+CONTROLLER = control.Controller(ENV, **SETTINGS)
+REPLANNER = control.Replanner(ENV, **SETTINGS)
 MODEL = dict(zip("AB", control.linearize_step(control.UPRIGHT)), Q=ONE, R=1.0)
 #: Valid values of all arguments, by their names.
 WEIGHTS = "torque", "torque_change", "power", "below", "height", "margin", "arrival"
@@ -75,12 +78,15 @@ VALUES |= {"W": ONE, "S": [1.0] * 2}
 VALUES |= {"step": 0, "steps": 9, "tries": 1, "seed": 0, "progress": print, "iterations": 1}
 VALUES |= {"plan": PLAN, "plans": [PLAN], "states": [REST]}
 VALUES |= {"velocity_clamp": True, "parameter_std": {}}
+VALUES |= SETTINGS | {"controller": CONTROLLER}
 CALLS = [
     *(getattr(control, each) for each in control.__all__ if each[0].islower()),
     *(control.Animation, control.Estimator, ESTIMATOR.correct, ESTIMATOR.predict),
     *(control.Planner, PLANNER.plan, PLANNER.improve, PLANNER.improve_each, PLANNER.holds_from),
+    *(control.Controller, CONTROLLER.tick, control.Replanner, REPLANNER.exchange),
     *(PLAN.torque, control.SwingUp, control.SwingUp(6.0).torque),
 ]
+NO_ARRAYS = "plan", "plans", "parameter_std", "controller"
 RECORDING = {"angles": [[[0.0, 0.1]] * 9], "torques": [[0.0] * 9]}
 OTHERS = gymnasium.make("Acrobot-v1"), acrobot_rs.AcrobotVectorEnv(2), acrobot_rs.AcrobotEnv
 
@@ -92,7 +98,7 @@ def test_an_error_names_the_argument_the_rule_and_the_value(call, name):
     names = inspect.signature(call).parameters
     values = VALUES | (RECORDING if call == control.identify else {})
     for bad in (NAN, -np.inf, "a", {}, *OTHERS * (name == "env")):
-        is_array = isinstance(bad, float) and name not in ("plan", "plans", "parameter_std")
+        is_array = isinstance(bad, float) and name not in NO_ARRAYS
         value = np.full(np.shape(values[name]), bad) if is_array else bad
         if (name, value) != ("parameter_std", {}):
             with pytest.raises((ValueError, TypeError)) as error:

@@ -25,9 +25,9 @@ CRATES = [name.split("[")[0] for row in ROWS if row["call"] == "params" for name
 PYTHONS = [name for name in AcrobotEnv._NAMES if name not in ("LINK_MOI", "book_or_nips")]
 NAMES = dict(zip(dict.fromkeys(CRATES), PYTHONS, strict=True))
 COLUMNS = [name for name in PYTHONS for _ in range(3 if name == "AVAIL_TORQUE" else 1)]
-#: Python has neither single acrobots in float32 nor what microcontrollers need.
+#: Python has no single acrobots in float32.
 RESULTS = [row for row in RESULTS if row.get("arithmetic") != "fast"]
-RESULTS = [row for row in RESULTS if row["call"] not in ("episode", "control")]
+RESULTS = [row for row in RESULTS if row["call"] != "episode"]
 
 
 class MyNormal(Normal):
@@ -119,7 +119,22 @@ def identify(row, env):
     return flat(*([*part.values()] for part in parts))
 
 
+def mpc(row, env):
+    settings = {name: row[name] for name in ("limit", "delay", "plan_timeout")}
+    settings["counts"] = row["per_turn"]
+    controller = control.Controller(env, **settings)
+    replanner = control.Replanner(env, **settings)
+    torques = []
+    for tick, counts in enumerate(np.reshape(row["counts"], (-1, 2))):
+        torques.append(controller.tick(counts))
+        if tick % row["every"] == 0:
+            replanner.exchange(controller)
+            replanner.work()
+    return flat(torques, *controller.report)
+
+
 REPLAYS = {each.__name__: each for each in (batch, plan, swing_up, estimate, identify)}
+REPLAYS["control"] = mpc
 
 
 @pytest.mark.parametrize("row", RESULTS, ids=lambda row: row["call"])

@@ -92,6 +92,25 @@ impl Settings {
         }
     }
 
+    /// Checks all settings. Returns the torques on their way: none.
+    pub(super) fn check(&self) -> Result<Delay, Error> {
+        let [counts1, counts2] = self.counts.map(f64::from);
+        self.params.validate()?;
+        for (name, value, unit) in [
+            ("limit", self.limit.into(), "N m"),
+            ("counts", counts1, "for a turn"),
+            ("counts", counts2, "for a turn"),
+        ] {
+            Range::AboveZero.check(name, value, unit)?;
+        }
+        let (name, value) = ("plan_timeout", self.plan_timeout);
+        if value.is_nan() || value <= 0.0 {
+            let (value, unit) = (value.into(), "s");
+            return Err(Error::OutOfRange { name, value, unit, rule: "above 0" });
+        }
+        Delay::new(self.delay, self.params.dt, self.ticks())
+    }
+
     /// Ticks from a decision to the next.
     pub(super) fn ticks(&self) -> u32 {
         let Units { time, .. } = Units::new(&self.params, self.limit);
@@ -138,23 +157,10 @@ impl<const N: usize> Controller<N> {
     ///
     /// # Errors
     ///
-    /// A parameter is out of range, or another setting is not above 0.
+    /// A setting is out of range.
     pub fn new(settings: Settings) -> Result<Self, Error> {
-        let [counts1, counts2] = settings.counts.map(f64::from);
-        settings.params.validate()?;
-        for (name, value, unit) in [
-            ("limit", settings.limit.into(), "N m"),
-            ("counts", counts1, "for a turn"),
-            ("counts", counts2, "for a turn"),
-        ] {
-            Range::AboveZero.check(name, value, unit)?;
-        }
-        let (name, value) = ("plan_timeout", settings.plan_timeout);
-        if value.is_nan() || value <= 0.0 {
-            let (value, unit) = (value.into(), "s");
-            return Err(Error::OutOfRange { name, value, unit, rule: "above 0" });
-        }
-        let ticks = settings.ticks();
+        let delay = settings.check()?;
+        let [counts1, counts2] = settings.counts;
         let angle = ANGLE * TAU / counts1.min(counts2) as f32;
         let noise = Noise { angle_std: angle, torque_std: TORQUE * settings.limit };
         Ok(Self {
@@ -166,10 +172,10 @@ impl<const N: usize> Controller<N> {
             state: State::HANGING,
             decisions: 0,
             planned: 0,
-            ticks,
+            ticks: settings.ticks(),
             tick: 0,
             torque: 0.0,
-            delay: Delay::new(settings.delay, settings.params.dt, ticks)?,
+            delay,
         })
     }
 

@@ -93,8 +93,9 @@ impl<const N: usize> Replanner<N> {
     ///
     /// # Errors
     ///
-    /// The parameters have no regulator.
+    /// A setting is out of range, or the parameters have no regulator.
     pub fn new(settings: Settings) -> Result<Self, Error> {
+        settings.check()?;
         let Settings { mut params, limit, .. } = settings;
         let ticks = settings.ticks() as f32;
         params.dt *= ticks;

@@ -23,17 +23,21 @@ from acrobot_rs.control.model import (
     simulate,
     tvlqr,
 )
+from acrobot_rs.control.mpc import Controller, Replanner, Report
 from acrobot_rs.control.plan import Feedback, Plan, Planner, Region, SwingUp
 
 __all__ = [
     "UPRIGHT",
     "Animation",
+    "Controller",
     "Estimator",
     "Feedback",
     "Fit",
     "Plan",
     "Planner",
     "Region",
+    "Replanner",
+    "Report",
     "SwingUp",
     "derivative",
     "deviation",
