@@ -2,8 +2,9 @@
 //! wrong model, and plans that are made while it moves.
 //!
 //! ```text
-//! cargo run --release -p desktop --bin real                  # seeds from 0
-//! cargo run --release -p desktop --bin real -- --first 20    # other seeds
+//! cargo run --release -p desktop --bin real                            # RealAIGym's machine
+//! cargo run --release -p desktop --bin real -- --first 20              # other seeds
+//! cargo run --release -p desktop --bin real -- mass2=0.8 counts=5000   # another machine
 //! ```
 //!
 //! docs/real.md has the table that it prints, and explains it.
@@ -14,8 +15,9 @@ use acrobot::control::identify::{Regression, Sample};
 use acrobot::control::mpc::Settings;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::{Error, Params};
+use anyhow::{Context, bail};
 use clap::Parser;
-use machine::{Hardware, Machine, Rehearsal};
+use machine::{Hardware, Machine, Rehearsal, least_torque};
 use rayon::prelude::*;
 
 /// The time between two pushes, s.
@@ -35,25 +37,79 @@ struct Options {
     /// The first seed.
     #[arg(long, default_value_t = 0)]
     first: u64,
-    /// Ticks of 2 ms that a slice of planning takes, such as 12 to 20 on an STM32F4.
+    /// Ticks that a slice of planning takes, such as 12 to 20 of 2 ms on an STM32F4.
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     slice: u32,
+    /// Numbers that differ from RealAIGym's machine: those of `Params`, such as mass1=0.6, kg, or
+    /// coulomb1=0.1, N m; limit, N m; counts, of both encoders for a turn; zero1 and zero2, rad;
+    /// delay and lag, s; torque_factor; torque_std, N m
+    #[arg(value_name = "NAME=VALUE")]
+    numbers: Vec<String>,
 }
 
-/// What the controller believes of a machine, given the true parameters.
-type Model = fn(Params, u64) -> Result<Params, Error>;
+/// Changes a number of a machine.
+fn set(hardware: &mut Hardware, number: &str) -> anyhow::Result<()> {
+    let (name, value) = number.split_once('=').context("must be a name, = and a number")?;
+    let value: f64 = value.parse()?;
+    let names = hardware.params.numbers().map(|(name, _)| name);
+    let [zero1, zero2] = &mut hardware.zeros;
+    match name {
+        "limit" => hardware.limit = value,
+        "counts" => hardware.counts = [value as i32; 2],
+        "zero1" => *zero1 = value,
+        "zero2" => *zero2 = value,
+        "delay" => hardware.delay = value,
+        "lag" => hardware.lag = value,
+        "torque_factor" => hardware.torque_factor = value,
+        "torque_std" => hardware.torque_std = value,
+        _ => match names.into_iter().zip(hardware.params.numbers_mut()).find(|(x, _)| *x == name) {
+            Some((_, number)) => *number = value,
+            None => bail!(
+                "the name must be limit, counts, zero1, zero2, delay, lag, \
+                torque_factor, torque_std or one of {}",
+                names.join(", ")
+            ),
+        },
+    }
+    Ok(())
+}
+
+/// Says what makes a machine hard to hold. docs/real.md has on how many machines each was tried.
+fn advise(Hardware { params, limit, delay, lag, .. }: &Hardware) {
+    let (strength, friction) = (limit / least_torque(params), 100.0 * params.coulomb1 / limit);
+    let ratio = params.length1 / params.length2;
+    println!("The motor has {strength:.1} of the least torque that swings this machine up.");
+    if strength < 1.2 {
+        println!("Take a motor of {:.2} N m or more, or lighter links.", 1.2 * limit / strength);
+    }
+    if friction < 1.3 {
+        println!(
+            "Joint 1 has dry friction of {friction:.1} % of the motor: from 1.3 % it is easier."
+        );
+    }
+    if ratio > 2.0 {
+        println!("Link 1 is {ratio:.1} times as long as link 2: up to 2 is easier.");
+    }
+    if delay + lag > 0.02 {
+        println!("The torque acts {:.0} ms late: up to 20 was tried.", 1e3 * (delay + lag));
+    }
+}
+
+/// What the controller believes of a machine.
+type Model = fn(&Hardware, u64) -> Result<Params, Error>;
 
 /// The motion of a machine between pushes: seconds until upright, if it then stays there.
 type Motion = [Option<f64>; PUSHES.len()];
 
-/// Shakes a machine for 10 s with up to 3 N m, and identifies it from what the encoders counted.
-fn identified(truth: Params, seed: u64) -> Result<Params, Error> {
-    let (hardware, mut rng) = (Hardware::realaigym(), Pcg64::new(seed));
-    let mut machine = Machine::new(hardware, seed)?;
+/// Shakes a machine for 10 s with up to half of the motor's torque, and identifies it from what
+/// the encoders counted.
+fn identified(hardware: &Hardware, seed: u64) -> Result<Params, Error> {
+    let (truth, half) = (hardware.params, hardware.limit / 2.0);
+    let (mut machine, mut rng) = (Machine::new(*hardware, seed)?, Pcg64::new(seed));
     let (mut recording, mut torque, mut left) = (Vec::new(), 0.0, 0.0);
     for _ in 0..(SECONDS / truth.dt) as u32 {
         if left <= 0.0 {
-            (torque, left) = (uniform(&mut rng, -3.0, 3.0) as f32, uniform(&mut rng, 0.05, 0.4));
+            (torque, left) = (uniform(&mut rng, -half, half) as f32, uniform(&mut rng, 0.05, 0.4));
         }
         left -= truth.dt;
         let turn = f64::from(hardware.counts[0]);
@@ -62,48 +118,69 @@ fn identified(truth: Params, seed: u64) -> Result<Params, Error> {
         machine.step(torque);
     }
     let mut regression = Regression::EMPTY;
-    regression.add(&recording, truth.dt, truth.gravity, 2, 250)?;
+    regression.add(&recording, truth.dt, truth.gravity, 2, (0.5 / truth.dt) as usize)?;
     // Masses, inertias and friction as drawn do not count, except for centres of mass.
     regression.fit().params(Params { mass1: 1.0, mass2: 1.0, ..truth })
 }
 
-fn control(seed: u64, slice: u32, model: Model) -> Result<Motion, Error> {
-    let hardware = Hardware::realaigym();
-    let params = model(hardware.params, seed)?.cast();
-    let settings =
-        Settings { params, limit: 6.0, counts: hardware.counts, delay: 0.0, plan_timeout: 1.0 };
-    let mut rehearsal = Rehearsal::new(Machine::new(hardware, seed)?, settings, slice)?;
+fn control(hardware: &Hardware, seed: u64, slice: u32, model: Model) -> Result<Motion, Error> {
+    let &Hardware { limit, counts, delay, lag, .. } = hardware;
+    let settings = Settings {
+        params: model(hardware, seed)?.cast(),
+        limit: limit as f32,
+        counts,
+        delay: (delay + lag) as f32,
+        plan_timeout: 1.0,
+    };
+    let mut rehearsal = Rehearsal::new(Machine::new(*hardware, seed)?, settings, slice)?;
     let (mut motion, mut rng) = (Motion::default(), Pcg64::new(seed + 1000));
     for (time, push) in motion.iter_mut().zip(PUSHES) {
-        *time = rehearsal.run(SECONDS, UPRIGHT, HELD)?;
+        // An error switches the motor off.
+        let Ok(upright) = rehearsal.run(SECONDS, UPRIGHT, HELD) else { break };
+        *time = upright;
         rehearsal.machine.push([(); 2].map(|()| uniform(&mut rng, -push, push)));
     }
     Ok(motion)
 }
 
 fn main() -> anyhow::Result<()> {
-    let Options { count, first, slice } = Options::parse();
+    let Options { count, first, slice, numbers } = Options::parse();
+    let mut hardware = Hardware::realaigym();
+    for number in &numbers {
+        set(&mut hardware, number).with_context(|| number.clone())?;
+    }
+    if !numbers.is_empty() {
+        Machine::new(hardware, first)?;
+        let numbers = hardware.params.numbers().into_iter().filter(|(_, value)| *value != 0.0);
+        let numbers: Vec<_> = numbers.map(|(name, value)| format!("{name}={value}")).collect();
+        println!("{}", numbers.join(" "));
+        advise(&hardware);
+        println!();
+    }
     println!("| model | upright of {count} | after a push of 1 rad/s | of 6 rad/s |");
     println!("|---|---|---|---|");
     let models: [(&str, Model); 3] = [
-        ("the true one", |truth, _| Ok(truth)),
+        ("the true one", |hardware, _| Ok(hardware.params)),
         ("identified", identified),
-        ("without friction", |truth, _| {
+        ("without friction", |hardware, _| {
             let (damping1, damping2, coulomb1, coulomb2) = (0.0, 0.0, 0.0, 0.0);
-            Ok(Params { damping1, damping2, coulomb1, coulomb2, ..truth })
+            Ok(Params { damping1, damping2, coulomb1, coulomb2, ..hardware.params })
         }),
     ];
     for (name, model) in models {
         let seeds = (first..first + count).into_par_iter();
-        let motions = seeds.map(|seed| control(seed, slice, model));
+        let motions = seeds.map(|seed| control(&hardware, seed, slice, model));
         let motions: Vec<Motion> = motions.collect::<Result<_, _>>()?;
         print!("| {name} |");
         for part in 0..PUSHES.len() {
             let mut times: Vec<f64> = motions.iter().filter_map(|motion| motion[part]).collect();
             times.sort_by(f64::total_cmp);
-            let (held, latest) = (times.len(), times.last().unwrap_or(&f64::NAN));
-            let median = times.get(held / 2).unwrap_or(&f64::NAN);
-            print!(" {held}, in {median:.1} s, at most {latest:.1} s |");
+            match (times.get(times.len() / 2), times.last()) {
+                (Some(median), Some(latest)) => {
+                    print!(" {}, in {median:.1} s, at most {latest:.1} s |", times.len());
+                }
+                _ => print!(" 0 |"),
+            }
         }
         println!();
     }
