@@ -112,11 +112,15 @@ def estimate(row, env):
 def identify(row, env):
     angles, torques = np.reshape(row["angles"], (-1, 2)), row["torques"]
     first = row["first"]
+    calibrated = control.calibrate(angles, torques, env)
     angles, torques = ([each[:first], each[first:]] for each in (angles, torques))
     found = control.identify(angles, torques, env)
-    parts = found.values, found.std_errors, found.weakest, found.params
-    row["result"] = row["identified"]
-    return flat(*([*part.values()] for part in parts))
+    row["result"] = row["identified"] + row["calibrated"]
+    fits = [found.values, found.std_errors, found.weakest, found.params]
+    fits += [calibrated.fit.values, calibrated.fit.std_errors, calibrated.fit.weakest]
+    fits = [[*part.values()] for part in fits]
+    numbers = [*calibrated.zeros, calibrated.delay, calibrated.prediction_error]
+    return flat(*fits[:4], numbers, *fits[4:])
 
 
 REPLAYS = {each.__name__: each for each in (batch, plan, swing_up, estimate, identify)}
