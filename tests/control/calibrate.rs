@@ -45,7 +45,9 @@ fn a_recording_tells_the_zeros_the_delay_and_the_machine() {
         hardware.zeros = [(); 2].map(|()| uniform(&mut rng, -0.1, 0.1));
         let found = match calibrate(&record(&hardware, 10.0, seed), drawn(&hardware)) {
             Ok(found) => found,
-            Err(Error::OutOfRange { rule, .. }) if rule.starts_with("known within 3") => {
+            Err(error @ Error::OutOfRange { rule, .. }) if rule.starts_with("known within 3") => {
+                let Params { length1, length2, .. } = hardware.params;
+                println!("{seed}: {error}; link 1 / link 2 is {:.1}", length1 / length2);
                 rejected += 1;
                 continue;
             }

@@ -46,6 +46,7 @@ pub struct Calibration {
 /// Tries zeros up to 0.5 rad and delays up to T / 2, where T is
 /// √((`length1` + `center_of_mass2`) / `gravity`), so that link 1's length and link 2's centre of
 /// mass should be about right. Those are best that leave the least of the torques unexplained.
+/// [A machine of your own](crate::guide::real#2-identify) has an example with counts.
 ///
 /// ```
 /// # use acrobot::control::identify::{Sample, calibrate};
@@ -92,7 +93,8 @@ pub fn calibrate(recording: &[Sample], given: Params) -> Result<Calibration, Err
         fit.params(given)?;
     }
     check(&correction, least, &regression.fit_free([true; _]), given.dt)?;
-    let (first, last) = recording.split_at(recording.len() / 3 * 2);
+    let (first, last) =
+        recording.split_at_checked(recording.len() / 3 * 2).unwrap_or((recording, &[]));
     let of_first = regress(first, &given, &correction)?.fit().params(given)?;
     let ahead = in_steps(&given, AHEAD);
     Ok(Calibration {

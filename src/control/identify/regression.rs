@@ -22,8 +22,7 @@ const UNITS: [&str; FRICTION] = ["kg m²", "kg m²", "kg m²", "kg m", "kg m", "
 const SINGULAR: f64 = 1e-10;
 
 /// A regression of recorded motions: its normal equations, of constant size, so firmware can keep
-/// them while it shakes the machine: [an example](crate::guide::real#2-identify). A recording at
-/// rest determines no number:
+/// them while it shakes the machine. A recording at rest determines no number:
 ///
 /// ```
 /// use acrobot::control::identify::{Regression, Sample};
