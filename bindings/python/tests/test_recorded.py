@@ -115,12 +115,11 @@ def identify(row, env):
     calibrated = control.calibrate(angles, torques, env)
     angles, torques = ([each[:first], each[first:]] for each in (angles, torques))
     found = control.identify(angles, torques, env)
-    row["result"] = row["identified"] + row["calibrated"]
-    fits = [found.values, found.std_errors, found.weakest, found.params]
-    fits += [calibrated.fit.values, calibrated.fit.std_errors, calibrated.fit.weakest]
-    fits = [[*part.values()] for part in fits]
+    row["result"] = row["calibrated"] + row["identified"]
     numbers = [*calibrated.zeros, calibrated.delay, calibrated.prediction_error]
-    return flat(*fits[:4], numbers, *fits[4:])
+    parts = [each for fit in (calibrated.fit, found)
+             for each in (fit.values, fit.std_errors, fit.weakest)]
+    return flat(numbers, *([*part.values()] for part in [*parts, found.params]))
 
 
 REPLAYS = {each.__name__: each for each in (batch, plan, swing_up, estimate, identify)}
