@@ -72,12 +72,14 @@ fn a_recording_tells_the_zeros_the_delay_and_the_machine() {
     assert!(part(&masses, 5) < 0.01 && part(&masses, 9) < 0.05 && part(&predicted, 5) < 0.04);
 }
 
+type Change<'a> = &'a dyn Fn(&mut Sample);
+
 /// On RealAIGym's machine, in 5 s.
 #[test]
 fn what_is_wrong_with_a_recording_is_named() {
     let hardware = Hardware { zeros: [0.05, -0.03], ..Hardware::realaigym() };
     let recording = record(&hardware, 5.0, 7);
-    let calibrated = |change: &dyn Fn(&mut Sample)| {
+    let calibrated = |change: Change| {
         let mut recording = recording.clone();
         recording.iter_mut().for_each(change);
         calibrate(&recording, drawn(&hardware))
@@ -87,7 +89,7 @@ fn what_is_wrong_with_a_recording_is_named() {
 
     let [unexplained, wrong] = ["unexplained torque must be at most 3 %", "must be 1"];
     let turned = |angle: f64| angle - (angle / TAU).round() * TAU;
-    let cases: [(&str, &dyn Fn(&mut Sample)); 10] = [
+    let cases: [(&str, Change); 10] = [
         (&format!("sign of angle1 {wrong} (counterclockwise), got -1"), &|x| x.angles[0] *= -1.0),
         (&format!("sign of angle2 {wrong} (counterclockwise), got -1"), &|x| x.angles[1] *= -1.0),
         (&format!("sign of torque {wrong} (θ2 grows), got -1"), &|x| x.torques[1] *= -1.0),

@@ -8,9 +8,9 @@ import { SIZES, STRUCTS } from "./layout.js";
 import { checked, invalid, positive } from "./wasm.js";
 
 const {
-  acrobot_calibration_t: CALIBRATION, acrobot_fit_t: FIT, acrobot_noise_t: NOISE, acrobot_params_t: PARAMS,
-  acrobot_parameter_std_t: STD, acrobot_report_t: REPORT, acrobot_settings_t: SETTINGS,
-  acrobot_state_t: STATE,
+  acrobot_calibration_t: CALIBRATION, acrobot_fit_t: FIT, acrobot_noise_t: NOISE,
+  acrobot_params_t: PARAMS, acrobot_parameter_std_t: STD, acrobot_report_t: REPORT,
+  acrobot_settings_t: SETTINGS, acrobot_state_t: STATE,
 } = STRUCTS;
 
 /** The words of Gymnasium's parameters with changes. */

@@ -117,8 +117,11 @@ def identify(row, env):
     found = control.identify(angles, torques, env)
     row["result"] = row["calibrated"] + row["identified"]
     numbers = [*calibrated.zeros, calibrated.delay, calibrated.prediction_error]
-    parts = [each for fit in (calibrated.fit, found)
-             for each in (fit.values, fit.std_errors, fit.weakest)]
+    parts = [
+        each
+        for fit in (calibrated.fit, found)
+        for each in (fit.values, fit.std_errors, fit.weakest)
+    ]
     return flat(numbers, *([*part.values()] for part in [*parts, found.params]))
 
 

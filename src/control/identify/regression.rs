@@ -130,7 +130,6 @@ impl Regression {
     }
 
     /// The part of the torques' squares that no numbers explain, also without a bound: 1 − R².
-    #[expect(clippy::indexing_slicing, reason = "each row has N + 1 elements")]
     pub(super) fn unexplained(&self) -> f64 {
         let torques = self.products[N];
         let found = self.fit_free([true; N]).values;
