@@ -176,7 +176,8 @@ impl<N: fmt::Display> fmt::Display for Named<N> {
         let Self(error, name) = self;
         match *error {
             Error::OutOfRange { value, unit, rule, .. } => {
-                write!(f, "{name} must be {rule} {unit}, got {value}")
+                let space = if unit.is_empty() { "" } else { " " };
+                write!(f, "{name} must be {rule}{space}{unit}, got {value}")
             }
             Error::WrongLength { len, expected, .. } => {
                 write!(f, "{name} must have {expected} elements, got {len}")

@@ -9,7 +9,7 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Damped, Portable, Real};
 use acrobot::batch::{Autoreset, VecBatch};
 use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
-use acrobot::control::identify::{Fit, Regression, Sample, identify};
+use acrobot::control::identify::{Fit, Regression, Sample, calibrate, identify};
 use acrobot::control::model::{Forces, LinearModel, StepModel};
 use acrobot::control::mpc::{Controller, Replanner, Report, Settings};
 use acrobot::control::plan::{Knot, Planner, Problem, SwingUp};
@@ -302,12 +302,17 @@ fn identification(table: &mut Table) {
     let fit = regression.fit();
     let all = |fit: &Fit| [fit.values, fit.std_errors, fit.weakest].concat();
     let identified = [all(&found), numbers(&of_both)].concat();
+    let calibration = calibrate(&samples, drawn).unwrap();
+    let [zero1, zero2] = calibration.zeros;
+    let calibrated = vec![zero1, zero2, calibration.delay, calibration.prediction_error];
+    let calibrated = [calibrated, all(&calibration.fit)].concat();
     let given = json!({
         "params": numbers(&drawn), "angles": flat(&[angles.as_flattened()]), "torques": torques,
         "first": one.len(), "half": half, "window": window, "fit": all(&fit),
-        "identified": identified,
+        "identified": identified, "calibrated": calibrated,
     });
-    let results = [of_one, fit.params(drawn).unwrap()].map(|params| numbers(&params.cast::<f32>()));
+    let results = [of_one, fit.params(drawn).unwrap(), calibration.params];
+    let results = results.map(|params| numbers(&params.cast::<f32>()));
     table.add("identify", given, results.concat());
 }
 

@@ -2,6 +2,7 @@
 //! digits, recorded by `tests/data/control.py`.
 
 mod balance;
+mod calibrate;
 mod dlqe;
 mod estimator;
 mod identify;

@@ -3,7 +3,7 @@
 use core::ptr;
 
 use acrobot::Params;
-use acrobot::control::identify::{self, Fit, Regression, Sample};
+use acrobot::control::identify::{self, Calibration, Fit, Regression, Sample};
 
 use crate::data::acrobot_params_t;
 use crate::memory::{Holder, Span, array, change, check_apart, get, init, read};
@@ -143,6 +143,42 @@ pub unsafe extern "C" fn acrobot_identify(
     compute(params, error, || {
         let samples = samples_of(samples, count)?;
         single(identify::identify(&[&*samples], double(given)?)?.0)
+    })
+}
+
+/// What acrobot_calibrate finds.
+#[repr(C)]
+pub struct acrobot_calibration_t {
+    /// The recorded angles where those of the machine are 0, rad.
+    pub zeros: [f64; 2],
+    /// From a torque until it acts, with the time constant of the motor, s.
+    pub delay: f64,
+    /// The root of the mean square of the errors of angles, rad, if parameters of the first two
+    /// thirds of the recording predict the last third, √((length1 + center_of_mass2) / gravity)
+    /// ahead.
+    pub prediction_error: f64,
+    pub fit: acrobot_fit_t,
+    pub params: acrobot_params_t,
+}
+
+/// The zeros of both encoders, the delay and the parameters of a recording with a sample in each
+/// `dt` of `given`, whose lengths should be about right, too. Rejected if more than 3 % of the
+/// torques is unexplained, a number is not known within 3 %, an angle or the torque has the wrong
+/// sign, the second angle is not that from link 1, or a zero is beyond 0.5 rad.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_calibrate(
+    samples: *const acrobot_sample_t,
+    count: usize,
+    given: *const acrobot_params_t,
+    calibration: *mut acrobot_calibration_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    compute(calibration, error, || {
+        let samples = samples_of(samples, count)?;
+        let Calibration { params, fit, zeros, delay, prediction_error } =
+            identify::calibrate(&*samples, double(given)?)?;
+        let (fit, params) = (fit.into(), single(params)?);
+        Ok(acrobot_calibration_t { zeros, delay, prediction_error, fit, params })
     })
 }
 

@@ -577,6 +577,20 @@ typedef struct {
   size_t rank_deficiency;
 } acrobot_fit_t;
 
+// What acrobot_calibrate finds.
+typedef struct {
+  // The recorded angles where those of the machine are 0, rad.
+  double zeros[2];
+  // From a torque until it acts, with the time constant of the motor, s.
+  double delay;
+  // The root of the mean square of the errors of angles, rad, if parameters of the first two
+  // thirds of the recording predict the last third, √((length1 + center_of_mass2) / gravity)
+  // ahead.
+  double prediction_error;
+  acrobot_fit_t fit;
+  acrobot_params_t params;
+} acrobot_calibration_t;
+
 // What a timer's interrupt does: it estimates the state, and follows a plan of 100 decisions. Call
 // acrobot_controller_init first. You may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
@@ -901,6 +915,13 @@ acrobot_status_t acrobot_fit_params(const acrobot_fit_t *fit, const acrobot_para
 // about right, too. Tries many windows, and takes those that predict best.
 acrobot_status_t acrobot_identify(const acrobot_sample_t *samples, size_t count,
     const acrobot_params_t *given, acrobot_params_t *params, acrobot_error_t *error);
+
+// The zeros of both encoders, the delay and the parameters of a recording with a sample in each
+// `dt` of `given`, whose lengths should be about right, too. Rejected if more than 3 % of the
+// torques is unexplained, a number is not known within 3 %, an angle or the torque has the wrong
+// sign, the second angle is not that from link 1, or a zero is beyond 0.5 rad.
+acrobot_status_t acrobot_calibrate(const acrobot_sample_t *samples, size_t count,
+    const acrobot_params_t *given, acrobot_calibration_t *calibration, acrobot_error_t *error);
 
 // The root of the mean square of the errors of angles, rad, if they are predicted `horizon` steps
 // ahead; 0 for a recording that is too short.

@@ -110,6 +110,7 @@ static const struct {
     // Good arguments: a recording at rest determines nothing, and the bytes are those of a batch.
     {"acrobot_fit_params", "", ACROBOT_ERROR_OUT_OF_RANGE},
     {"acrobot_identify", "", ACROBOT_ERROR_OUT_OF_RANGE},
+    {"acrobot_calibrate", "", ACROBOT_ERROR_OUT_OF_RANGE},
     {"acrobot_load", "", ACROBOT_ERROR_OTHER_SNAPSHOT},
 };
 

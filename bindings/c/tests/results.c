@@ -322,6 +322,7 @@ static void compare_knots(const acrobot_knot_t *knots, size_t count)
     acrobot_params_t found; \
     acrobot_regression_t regression; \
     acrobot_fit_t found_fit; \
+    acrobot_calibration_t calibration; \
     (void)identified; \
     CHECK(COUNT(torques) == SAMPLES); \
     for (size_t i = 0; i < SAMPLES; i++) { \
@@ -338,7 +339,10 @@ static void compare_knots(const acrobot_knot_t *knots, size_t count)
     ACCEPTED(acrobot_regression_fit(&regression, &found_fit)); \
     CHECK(same(&found_fit, fit, sizeof fit) && found_fit.rank_deficiency == 0); \
     ACCEPTED(acrobot_fit_params(&found_fit, &drawn, &found, NULL)); \
-    COMPARE_PARAMS(found)
+    COMPARE_PARAMS(found); \
+    ACCEPTED(acrobot_calibrate(samples, SAMPLES, &drawn, &calibration, NULL)); \
+    CHECK(same(&calibration, calibrated, sizeof calibrated)); \
+    COMPARE_PARAMS(calibration.params)
 
 #define control() \
     const acrobot_settings_t settings = { \

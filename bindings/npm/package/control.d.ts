@@ -362,6 +362,30 @@ export function identify(
   recording: Readonly<Recording>, params: Readonly<Partial<Params>>,
 ): Readonly<Params>;
 
+/** What `calibrate` finds. */
+export interface Calibration {
+  params: Readonly<Params>;
+  /** The numbers that they follow from. */
+  fit: Fit;
+  /** The recorded angles where those of the machine are 0, rad. */
+  zeros: [number, number];
+  /** From a torque until it acts, with the time constant of the motor, s. */
+  delay: number;
+  /**
+   * The root of the mean square of the errors of angles, rad, if parameters of the first two thirds
+   * of the recording predict the last third, √((length1 + centerOfMass2) / gravity) ahead.
+   */
+  predictionError: number;
+}
+
+/**
+ * The zeros of both encoders, the delay and the parameters of a machine whose lengths and `dt` are
+ * given. Throws if the recording has a wrong sign, or does not determine them.
+ */
+export function calibrate(
+  recording: Readonly<Recording>, params: Readonly<Partial<Params>>,
+): Calibration;
+
 /**
  * The root of the mean square of the errors of angles, rad, if they are predicted `horizon` steps
  * ahead; 0 for a recording that is too short.

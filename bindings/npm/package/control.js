@@ -8,7 +8,7 @@ import { Made, machine } from "./machine.js";
 import { checked, invalid, isFinite32, positive, randomSeed, seedWords } from "./wasm.js";
 
 export {
-  Controller, Estimator, ParameterEstimator, Regression, Replanner, fitParams, identify,
+  Controller, Estimator, ParameterEstimator, Regression, Replanner, calibrate, fitParams, identify,
   predictionError,
 } from "./machine.js";
 export { moduleBytes, setModule } from "./wasm.js";

@@ -8,9 +8,9 @@ import { SIZES, STRUCTS } from "./layout.js";
 import { checked, invalid, positive } from "./wasm.js";
 
 const {
-  acrobot_fit_t: FIT, acrobot_noise_t: NOISE, acrobot_params_t: PARAMS,
-  acrobot_parameter_std_t: STD, acrobot_report_t: REPORT, acrobot_settings_t: SETTINGS,
-  acrobot_state_t: STATE,
+  acrobot_calibration_t: CALIBRATION, acrobot_fit_t: FIT, acrobot_noise_t: NOISE,
+  acrobot_params_t: PARAMS, acrobot_parameter_std_t: STD, acrobot_report_t: REPORT,
+  acrobot_settings_t: SETTINGS, acrobot_state_t: STATE,
 } = STRUCTS;
 
 /** The words of Gymnasium's parameters with changes. */
@@ -157,6 +157,17 @@ export function identify(recording, params) {
   const words = empty(PARAMS);
   call(all, "acrobot_identify", samples, count, machine(changes), words);
   return unpack(words, PARAMS);
+}
+
+export function calibrate(recording, params) {
+  const changes = readChanges(params);
+  const [given, samples, count] = readRecording(recording);
+  const words = empty(CALIBRATION);
+  call({ ...changes, ...given }, "acrobot_calibrate", samples, count, machine(changes), words);
+  const part = ([at, length]) => words.slice(at, at + length);
+  const [zero1, zero2, delay, predictionError] = new Float64Array(words.buffer);
+  const [fit, found] = [fitOf(part(CALIBRATION.fit)), unpack(part(CALIBRATION.params), PARAMS)];
+  return { params: found, fit, zeros: [zero1, zero2], delay, predictionError };
 }
 
 export function predictionError(params, recording, horizon) {

@@ -127,7 +127,7 @@ const CALLS = {
     const { state, stateStd, params: found, zeros, torqueFactor } = estimator;
     return [...[state, stateStd, found].flatMap(numbersOf), ...zeros, torqueFactor];
   },
-  identify({ params, angles, torques, first, half, window, fit }) {
+  identify({ params, angles, torques, first, half, window, fit, calibrated }) {
     const [drawn, regression] = [machine(params), new control.Regression()];
     const found = control.identify({ angles, torques }, drawn);
     for (const [from, to] of [[0, first], [first, torques.length]]) {
@@ -136,7 +136,12 @@ const CALLS = {
     }
     const { rankDeficiency, ...arrays } = regression.fit();
     assert.deepEqual([flat(...Object.values(arrays)), rankDeficiency], [fit, 0]);
-    return [found, control.fitParams(regression.fit(), drawn)].flatMap(numbersOf);
+    const calibration = control.calibrate({ angles, torques }, drawn);
+    const { zeros, delay, predictionError, fit: { rankDeficiency: _, ...own } } = calibration;
+    const numbers = flat([...zeros, delay, predictionError], ...Object.values(own));
+    assert.deepEqual(numbers, calibrated);
+    const all = [found, control.fitParams(regression.fit(), drawn), calibration.params];
+    return all.flatMap(numbersOf);
   },
   control({ params, limit, per_turn: counts, delay, plan_timeout: planTimeout, every, ...row }) {
     const settings = { params: machine(params), limit, counts, delay, planTimeout };

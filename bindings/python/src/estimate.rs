@@ -4,7 +4,7 @@ use acrobot::Portable;
 use acrobot::arithmetic::Damped;
 use acrobot::control;
 use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
-use acrobot::control::identify::{Fit, Sample};
+use acrobot::control::identify::{Calibration, Fit, Sample};
 use pyo3::prelude::*;
 
 use crate::single::Acrobot;
@@ -84,27 +84,45 @@ impl Estimator {
     }
 }
 
-/// Angles and torques, a row for each sample of each recording, to parameters; to the numbers that
-/// they follow from, with standard errors and parts of the weakest combination; and to the rank
-/// deficiency.
-#[pyfunction]
-pub fn identify(
-    acrobot: &Bound<'_, Acrobot>,
-    recordings: Vec<Vec<[f64; 4]>>,
-) -> PyResult<(Named<f64>, Named<[f64; 3]>, usize)> {
+fn samples(rows: Vec<[f64; 4]>) -> Vec<Sample> {
     let sample = |[angle1, angle2, torque1, torque2]: [f64; 4]| Sample {
         angles: [angle1, angle2],
         torques: [torque1, torque2],
     };
-    let recordings: Vec<Vec<_>> =
-        recordings.into_iter().map(|rows| rows.into_iter().map(sample).collect()).collect();
-    let recordings: Vec<&[_]> = recordings.iter().map(Vec::as_slice).collect();
-    let (params, fit) = control::identify::identify(&recordings, alone(acrobot)?.acrobot.params())
-        .map_err(rejected)?;
+    rows.into_iter().map(sample).collect()
+}
+
+/// Parameters; the numbers that they follow from, with standard errors and parts of the weakest
+/// combination; and the rank deficiency.
+type Found = (Named<f64>, Named<[f64; 3]>, usize);
+
+fn found(params: &Params, fit: Fit) -> Found {
     let Fit { values, std_errors, weakest, rank_deficiency } = fit;
     let numbers = Fit::NAMES.into_iter().enumerate();
     let numbers = numbers.map(|(i, name)| (name, [values[i], std_errors[i], weakest[i]])).collect();
-    Ok((named_numbers(&params), numbers, rank_deficiency))
+    (named_numbers(params), numbers, rank_deficiency)
+}
+
+/// Angles and torques, a row for each sample of each recording.
+#[pyfunction]
+pub fn identify(acrobot: &Bound<'_, Acrobot>, recordings: Vec<Vec<[f64; 4]>>) -> PyResult<Found> {
+    let recordings: Vec<Vec<_>> = recordings.into_iter().map(samples).collect();
+    let recordings: Vec<&[_]> = recordings.iter().map(Vec::as_slice).collect();
+    let given = alone(acrobot)?.acrobot.params();
+    let (params, fit) = control::identify::identify(&recordings, given).map_err(rejected)?;
+    Ok(found(&params, fit))
+}
+
+/// Of one recording also the zeros, the delay and the error of the prediction.
+#[pyfunction]
+pub fn calibrate(
+    acrobot: &Bound<'_, Acrobot>,
+    recording: Vec<[f64; 4]>,
+) -> PyResult<(Found, [f64; 2], f64, f64)> {
+    let given = alone(acrobot)?.acrobot.params();
+    let Calibration { params, fit, zeros, delay, prediction_error } =
+        control::identify::calibrate(&samples(recording), given).map_err(rejected)?;
+    Ok((found(&params, fit), zeros, delay, prediction_error))
 }
 
 /// Names and what they stand for.

@@ -45,7 +45,7 @@ mod _native {
     #[pymodule_export]
     use super::control::{Planner, SwingUp, compute, plan_torque};
     #[pymodule_export]
-    use super::estimate::{Estimator, identify};
+    use super::estimate::{Estimator, calibrate, identify};
     #[pymodule_export]
     use super::mpc::{Controller, Replanner};
     #[pymodule_export]

@@ -112,11 +112,17 @@ def estimate(row, env):
 def identify(row, env):
     angles, torques = np.reshape(row["angles"], (-1, 2)), row["torques"]
     first = row["first"]
+    calibrated = control.calibrate(angles, torques, env)
     angles, torques = ([each[:first], each[first:]] for each in (angles, torques))
     found = control.identify(angles, torques, env)
-    parts = found.values, found.std_errors, found.weakest, found.params
-    row["result"] = row["identified"]
-    return flat(*([*part.values()] for part in parts))
+    row["result"] = row["calibrated"] + row["identified"]
+    numbers = [*calibrated.zeros, calibrated.delay, calibrated.prediction_error]
+    parts = [
+        each
+        for fit in (calibrated.fit, found)
+        for each in (fit.values, fit.std_errors, fit.weakest)
+    ]
+    return flat(numbers, *([*part.values()] for part in [*parts, found.params]))
 
 
 def mpc(row, env):

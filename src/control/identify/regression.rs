@@ -6,6 +6,7 @@
 
 use core::array::from_fn;
 
+use super::recording::{Correction, Sample};
 use crate::error::{Error, Range};
 use crate::math::Real;
 use crate::math::matrix::check_finite;
@@ -14,34 +15,14 @@ use crate::physics::{Params, WIDTH};
 /// The numbers on which a motion depends.
 const N: usize = 10;
 /// Those from here on are friction.
-const FRICTION: usize = 6;
+pub(super) const FRICTION: usize = 6;
 /// The units of those before.
 const UNITS: [&str; FRICTION] = ["kg m²", "kg m²", "kg m²", "kg m", "kg m", "kg m²"];
 /// Eigenvalues below this part of the largest diagonal element count as 0: the rank lacks them.
 const SINGULAR: f64 = 1e-10;
 
-/// A sample of a recording.
-///
-/// ```
-/// use acrobot::control::identify::Sample;
-///
-/// let counts = [10, -512]; // of encoders with 4,096 for a turn
-/// let angles = counts.map(|count| f64::from(count) / 4096.0 * std::f64::consts::TAU);
-/// let sample = Sample { angles, torques: [0.0, 1.5] }; // N m
-/// assert!((sample.angles[1] + 0.785).abs() < 1e-3); // rad
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)] // for bindings/abi
-pub struct Sample {
-    /// θ1 and θ2, rad, without jumps by whole turns.
-    pub angles: [f64; 2],
-    /// The torques on θ1 and θ2 from this sample to the next, N m. An acrobot's first is 0.
-    pub torques: [f64; 2],
-}
-
 /// A regression of recorded motions: its normal equations, of constant size, so firmware can keep
-/// them while it shakes the machine: [an example](crate::guide::real#2-identify). A recording at
-/// rest determines no number:
+/// them while it shakes the machine. A recording at rest determines no number:
 ///
 /// ```
 /// use acrobot::control::identify::{Regression, Sample};
@@ -78,6 +59,19 @@ impl Regression {
         half: usize,
         window: usize,
     ) -> Result<(), Error> {
+        self.add_corrected(samples, dt, gravity, half, window, &Correction::NONE)
+    }
+
+    /// As [`add`](Self::add), of a recording that needs a correction.
+    pub(super) fn add_corrected(
+        &mut self,
+        samples: &[Sample],
+        dt: f64,
+        gravity: f64,
+        half: usize,
+        window: usize,
+        correction: &Correction,
+    ) -> Result<(), Error> {
         Range::AboveZero.check("dt", dt, "s")?;
         Range::Finite.check("gravity", gravity, "m/s²")?;
         Range::AboveZero.check("half", half as f64, "samples")?;
@@ -88,16 +82,20 @@ impl Regression {
         }
         let mut sum = self.clone();
         let parabola = half.saturating_mul(2).saturating_add(1);
-        let windows = samples.windows(parabola.saturating_add(window));
+        // Before each parabola are torques that still act in its middle.
+        let length = correction.longest.saturating_add(parabola);
+        let windows = samples.windows(length.saturating_add(window));
         for samples in windows.step_by((window / 2).max(1)) {
             let mut rows = [[0.0; N + 1]; 2];
-            for (i, around) in samples.windows(parabola).enumerate() {
+            for (i, around) in samples.windows(length).enumerate() {
                 let z = i as f64 / window as f64;
                 let p = z * (1.0 - z);
                 // 16 p² and its slope.
                 let (weight, slope) = (16.0 * p * p, 32.0 * p * (1.0 - 2.0 * z) / window as f64);
-                let torques = around.get(half).map_or([0.0; 2], |sample| sample.torques);
-                let terms = terms(motion(around, dt), torques, gravity);
+                let parabola = around.get(correction.longest..).unwrap_or(around);
+                // The mean from half a sample before to half a one later: torques are held.
+                let torques = correction.torques(around, correction.longest + half, 0.5);
+                let terms = terms(correction.motion(parabola, dt), torques, gravity);
                 for (row, (momentum, force)) in rows.iter_mut().zip(terms) {
                     for ((x, momentum), force) in row.iter_mut().zip(momentum).zip(force) {
                         *x += weight * dt * force - slope * momentum;
@@ -131,10 +129,18 @@ impl Regression {
         }
     }
 
+    /// The part of the torques' squares that no numbers explain, also without a bound: 1 − R².
+    pub(super) fn unexplained(&self) -> f64 {
+        let torques = self.products[N];
+        let found = self.fit_free([true; N]).values;
+        let explained: f64 = found.iter().zip(torques).map(|(x, y)| x * y).sum();
+        1.0 - explained / torques[N]
+    }
+
     /// As [`fit`](Self::fit), with 0 for each number that is not free.
     #[inline(never)] // inlined, its flags are lanes whose other bits valgrind takes for undefined
     #[expect(clippy::indexing_slicing, reason = "i and j are below N")]
-    fn fit_free(&self, is_free: [bool; N]) -> Fit {
+    pub(super) fn fit_free(&self, is_free: [bool; N]) -> Fit {
         let products = &self.products;
         // Scaled, so that all numbers have the same weight. Row and column of one that is not free
         // are those of the identity.
@@ -184,27 +190,6 @@ impl Regression {
 
 fn sum_of_products(x: &[f64; N], y: &[f64; N]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
-}
-
-/// Angles and velocities, rad and rad/s, in the middle of an odd number of samples.
-pub(super) fn motion(samples: &[Sample], dt: f64) -> [[f64; 2]; 2] {
-    let half = (samples.len() / 2) as f64;
-    let count = 2.0 * half + 1.0;
-    // The sums of t² and t⁴.
-    let squares = half * (half + 1.0) * count / 3.0;
-    let fourths = squares * (3.0 * half * (half + 1.0) - 1.0) / 5.0;
-    let determinant = count * fourths - squares * squares;
-    let mut motion = [[0.0; 2]; 2];
-    for (i, sample) in samples.iter().enumerate() {
-        let t = i as f64 - half;
-        let weights = [(fourths - squares * t * t) / determinant, t / (squares * dt)];
-        for (numbers, weight) in motion.iter_mut().zip(weights) {
-            for (number, angle) in numbers.iter_mut().zip(sample.angles) {
-                *number += weight * angle;
-            }
-        }
-    }
-    motion
 }
 
 /// For both equations of motion d/dt p + f = τ, the factors of the ten numbers in p and in f, and

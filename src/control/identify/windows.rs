@@ -1,7 +1,8 @@
 //! Identifies the parameters of a machine from recorded angles and torques: of many ways to find
 //! velocities the one that predicts best.
 
-use super::regression::{Fit, Regression, Sample, motion};
+use super::recording::{Correction, Sample};
+use super::regression::{Fit, Regression};
 use crate::arithmetic::{Damped, Portable};
 use crate::error::Error;
 use crate::math::Real;
@@ -76,7 +77,7 @@ pub fn identify(recordings: &[&[Sample]], given: Params) -> Result<(Params, Fit)
 }
 
 /// A time in steps of `dt`, but no fewer than the given steps. Without gravity it is these.
-fn in_steps(params: &Params, (least, time): (usize, f64)) -> usize {
+pub(super) fn in_steps(params: &Params, (least, time): (usize, f64)) -> usize {
     let unit = Real::sqrt((params.length1 + params.center_of_mass2) / params.gravity.abs());
     match time * unit / params.dt {
         steps if steps <= 1e6 => least.max(steps as usize),
@@ -107,20 +108,33 @@ pub fn prediction_error(
     recording: &[Sample],
     horizon: usize,
 ) -> Result<f64, Error> {
+    corrected_prediction_error(params, recording, horizon, &Correction::NONE)
+}
+
+/// As [`prediction_error`], of a recording that needs a correction.
+pub(super) fn corrected_prediction_error(
+    params: Params,
+    recording: &[Sample],
+    horizon: usize,
+    correction: &Correction,
+) -> Result<f64, Error> {
     let half = in_steps(&params, FIRST);
     let fit = 2 * half + 1;
     let mut pendulum = Pendulum::<Damped<Portable>>::new(params, State::HANGING)?;
     let (mut squares, mut count) = (0.0, 0.0);
-    let windows = recording.windows(horizon.saturating_add(fit));
-    for samples in windows.step_by((horizon / 2).max(1)) {
-        let (Some(first), Some(last)) = (samples.get(..fit), samples.get(horizon..)) else { break };
-        let [[theta1, theta2], [dtheta1, dtheta2]] = motion(first, params.dt);
+    let longest = correction.longest;
+    let length = longest.saturating_add(fit).saturating_add(horizon);
+    for samples in recording.windows(length).step_by((horizon / 2).max(1)) {
+        let angles = samples.get(longest..).unwrap_or(samples);
+        let (Some(first), Some(last)) = (angles.get(..fit), angles.get(horizon..)) else { break };
+        let [[theta1, theta2], [dtheta1, dtheta2]] = correction.motion(first, params.dt);
         pendulum.set_state(State { theta1, theta2, dtheta1, dtheta2 })?;
-        for Sample { torques: [torque1, torque2], .. } in samples.iter().skip(half).take(horizon) {
+        for step in 0..horizon {
+            let [torque1, torque2] = correction.torques(samples, longest + half + step, 0.0);
             pendulum.push([torque1 * params.dt, 0.0])?;
-            pendulum.step(*torque2)?;
+            pendulum.step(torque2)?;
         }
-        let [[measured1, measured2], _] = motion(last, params.dt);
+        let [[measured1, measured2], _] = correction.motion(last, params.dt);
         let State { theta1, theta2, .. } = pendulum.state();
         let [error1, error2] = [wrap(theta1 - measured1), wrap(theta2 - measured2)];
         squares += error1 * error1 + error2 * error2;

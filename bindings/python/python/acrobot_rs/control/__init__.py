@@ -6,7 +6,7 @@ for Gymnasium's.
 """
 
 from acrobot_rs.control.animation import Animation
-from acrobot_rs.control.estimate import Estimator, Fit, identify
+from acrobot_rs.control.estimate import Calibration, Estimator, Fit, calibrate, identify
 from acrobot_rs.control.model import (
     UPRIGHT,
     derivative,
@@ -29,6 +29,7 @@ from acrobot_rs.control.plan import Feedback, Plan, Planner, Region, SwingUp
 __all__ = [
     "UPRIGHT",
     "Animation",
+    "Calibration",
     "Controller",
     "Estimator",
     "Feedback",
@@ -39,6 +40,7 @@ __all__ = [
     "Replanner",
     "Report",
     "SwingUp",
+    "calibrate",
     "derivative",
     "deviation",
     "dlqe",

@@ -122,19 +122,46 @@ def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env
     ``(n,)``, N m, or those of both joints, ``(n, 2)``, each until the next sample. ``env`` has
     ``dt``, gravity and the centres of mass; its lengths should be about right.
     """
-    recordings = []
     for name, given in (("angles", angles), ("torques", torques)):
         if not (isinstance(given, Sequence | np.ndarray) and len(given) == len(angles)):
             raise must_be(name, "a list of as many arrays", reprlib.repr(given), TypeError)
-    for angle, torque in zip(angles, torques, strict=True):
-        columns = finite("torques", "finite numbers of N m", torque, None)
-        if columns.ndim == 1:
-            columns = np.column_stack([np.zeros_like(columns), columns])
-        if columns.ndim != 2 or columns.shape[1] != 2:
-            raise must_be("torques", "arrays of shape (n,) or (n, 2)", columns.shape)
-        rule = f"finite numbers of shape {columns.shape}, rad, as many as torques"
-        angle = finite("angles", rule, angle, columns.shape)
-        recordings.append(np.column_stack([angle, columns]).tolist())
-    params, found, rank_deficiency = _native.identify(acrobot_of(env)._native, recordings)
+    recordings = [_rows(*recording) for recording in zip(angles, torques, strict=True)]
+    return _fit(*_native.identify(acrobot_of(env)._native, recordings))
+
+
+def _rows(angles: ArrayLike, torques: ArrayLike) -> list[list[float]]:
+    columns = finite("torques", "finite numbers of N m", torques, None)
+    if columns.ndim == 1:
+        columns = np.column_stack([np.zeros_like(columns), columns])
+    if columns.ndim != 2 or columns.shape[1] != 2:
+        raise must_be("torques", "arrays of shape (n,) or (n, 2)", columns.shape)
+    rule = f"finite numbers of shape {columns.shape}, rad, as many as torques"
+    return np.column_stack([finite("angles", rule, angles, columns.shape), columns]).tolist()
+
+
+def _fit(params: Any, found: Any, rank_deficiency: int) -> Fit:
     values, std_errors, weakest = ({name: row[i] for name, row in found} for i in range(3))
     return Fit(dict(params), values, std_errors, weakest, rank_deficiency)
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What :func:`calibrate` finds."""
+
+    fit: Fit
+    zeros: tuple[float, float]  #: the recorded angles where those of the machine are 0, rad
+    delay: float  #: from a torque until it acts, with the time constant of the motor, s
+    #: The root of the mean square of the errors of angles, rad, if parameters of the first two
+    #: thirds predict the last third, for the square root of
+    #: ``(LINK_LENGTH_1 + LINK_COM_POS_2) / gravity``.
+    prediction_error: float
+
+
+def calibrate(angles: ArrayLike, torques: ArrayLike, env: Env) -> Calibration:
+    """Calibrate a machine from one recording in which both links move, for ten seconds or so.
+
+    As :func:`identify`, for angles whose zeros are unknown, up to 0.5 rad, and a torque that acts
+    late. An error says which angle or torque has the wrong sign, and what is not determined.
+    """
+    found, zeros, *numbers = _native.calibrate(acrobot_of(env)._native, _rows(angles, torques))
+    return Calibration(_fit(*found), tuple(zeros), *numbers)

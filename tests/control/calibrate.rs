@@ -1,0 +1,132 @@
+//! A recording tells the zeros of the encoders, the delay and the parameters, or what is wrong.
+
+use std::env;
+use std::f64::consts::{PI, TAU};
+
+use acrobot::control::identify::{Calibration, Sample, calibrate};
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::{Error, Params};
+use machine::{Hardware, Machine, Random};
+
+/// What the encoders say under random torques of up to 0.3 of the motor's.
+fn record(hardware: &Hardware, seconds: f64, seed: u64) -> Vec<Sample> {
+    let mut machine = Machine::new(*hardware, seed).unwrap();
+    let mut rng = Pcg64::new(seed);
+    let (mut samples, mut torque, mut left) = (Vec::new(), 0.0, 0.0);
+    for _ in 0..(seconds / hardware.params.dt) as u32 {
+        if left <= 0.0 {
+            torque = (uniform(&mut rng, -0.3, 0.3) * hardware.limit) as f32;
+            left = uniform(&mut rng, 0.05, 0.4);
+        }
+        left -= hardware.params.dt;
+        let counts = machine.counts().map(|count| f64::from(count) + 0.5);
+        let angles = [0, 1].map(|i| counts[i] / f64::from(hardware.counts[i]) * TAU);
+        samples.push(Sample { angles, torques: [0.0, torque.into()] });
+        machine.step(torque);
+    }
+    samples
+}
+
+/// The lengths, the centres of mass and `dt`. No mass, inertia or friction is known.
+fn drawn(hardware: &Hardware) -> Params {
+    let Params { length1, center_of_mass1, center_of_mass2, dt, .. } = hardware.params;
+    Params { length1, center_of_mass1, center_of_mass2, dt, gravity: 9.81, ..Params::SWINGUP }
+}
+
+/// Of eight machines with zeros of up to 0.1 rad, or of as many as the variable `MACHINES` says.
+#[test]
+fn a_recording_tells_the_zeros_the_delay_and_the_machine() {
+    let machines = env::var("MACHINES").map_or(8, |count| count.parse().unwrap());
+    let (mut in_time, mut at_zero, mut rejected) = (0, 0, 0);
+    let (mut masses, mut predicted) = (Vec::new(), Vec::new());
+    let mut rng = Pcg64::new(1);
+    for seed in 5000..5000 + machines {
+        let mut hardware = Random::new(seed).hardware;
+        hardware.zeros = [(); 2].map(|()| uniform(&mut rng, -0.1, 0.1));
+        let found = match calibrate(&record(&hardware, 10.0, seed), drawn(&hardware)) {
+            Ok(found) => found,
+            Err(error @ Error::OutOfRange { rule, .. }) if rule.starts_with("known within 3") => {
+                let Params { length1, length2, .. } = hardware.params;
+                println!("{seed}: {error}; link 1 / link 2 is {:.1}", length1 / length2);
+                rejected += 1;
+                continue;
+            }
+            Err(error) => panic!("{seed}: {error}"),
+        };
+        let Calibration { params, zeros, delay, prediction_error, .. } = found;
+        in_time += u32::from((delay - hardware.delay - hardware.lag).abs() < 0.001);
+        let off = |i: usize| (zeros[i] - hardware.zeros[i]).abs() * 4096.0 / TAU;
+        at_zero += u32::from(off(0).max(off(1)) < 4.0);
+        masses.push((params.mass2 * hardware.torque_factor / hardware.params.mass2 - 1.0).abs());
+        predicted.push(prediction_error);
+    }
+    masses.sort_by(f64::total_cmp);
+    predicted.sort_by(f64::total_cmp);
+    println!(
+        "{in_time} delays, {at_zero} zeros, {rejected} not known; {masses:.3?} {predicted:.3?}"
+    );
+    let accepted = masses.len() as f64;
+    assert!(f64::from(in_time) >= 0.9 * accepted && f64::from(at_zero) >= 0.85 * accepted);
+    assert!(rejected <= machines / 8);
+    let part = |sorted: &[f64], part: usize| sorted[sorted.len() * part / 10];
+    assert!(part(&masses, 5) < 0.01 && part(&masses, 9) < 0.05 && part(&predicted, 5) < 0.04);
+}
+
+type Change<'a> = &'a dyn Fn(&mut Sample);
+
+/// On RealAIGym's machine, in 5 s.
+#[test]
+fn what_is_wrong_with_a_recording_is_named() {
+    let hardware = Hardware { zeros: [0.05, -0.03], ..Hardware::realaigym() };
+    let recording = record(&hardware, 5.0, 7);
+    let calibrated = |change: Change| {
+        let mut recording = recording.clone();
+        recording.iter_mut().for_each(change);
+        calibrate(&recording, drawn(&hardware))
+    };
+    let found = calibrated(&|_| ()).unwrap();
+    assert!(found.delay < 0.001 && found.prediction_error < 0.02, "{found:?}");
+
+    let [unexplained, wrong] = ["unexplained torque must be at most 3 %", "must be 1"];
+    let turned = |angle: f64| angle - (angle / TAU).round() * TAU;
+    let cases: [(&str, Change); 10] = [
+        (&format!("sign of angle1 {wrong} (counterclockwise), got -1"), &|x| x.angles[0] *= -1.0),
+        (&format!("sign of angle2 {wrong} (counterclockwise), got -1"), &|x| x.angles[1] *= -1.0),
+        (&format!("sign of torque {wrong} (θ2 grows), got -1"), &|x| x.torques[1] *= -1.0),
+        ("angle1 in angle2 must be 0 (measure θ2 from link 1), got 1", &|x| {
+            x.angles[1] += x.angles[0];
+        }),
+        ("zero1 must be between -0.5 and 0.5 rad, got 0.5", &|x| x.angles[0] += 0.455),
+        ("length1 must be finite and above 0 m", &|x| x.angles[0] += PI),
+        (unexplained, &|x| x.angles = x.angles.map(turned)),
+        (unexplained, &|x| x.angles.swap(0, 1)),
+        (unexplained, &|x| x.torques = [0.0; 2]),
+        ("mass22 must be determined by recordings in which both", &|x| x.angles[1] = 0.1),
+    ];
+    for (expected, change) in cases {
+        let error = calibrated(change).unwrap_err().to_string();
+        assert!(error.starts_with(expected), "{expected}: {error}");
+    }
+
+    // Torques late by so many samples.
+    let late = |samples: usize| {
+        let mut recording = recording.clone();
+        let torques = recording.clone().into_iter().skip(samples).map(|sample| sample.torques);
+        recording.iter_mut().zip(torques).for_each(|(sample, torques)| sample.torques = torques);
+        recording
+    };
+    let delay = calibrate(&late(10), drawn(&hardware)).unwrap().delay;
+    assert!((delay - found.delay - 0.020).abs() < 0.001, "{delay}");
+    let lost = [&recording[..1000], &recording[1100..]].concat();
+    let rejected = [
+        (lost, unexplained),
+        (late(55), "delay must be below √((length1 + center_of_mass2) / gravity) / 2, in s"),
+        (late(80), unexplained),
+        (recording[..300].to_vec(), "mass11 must be "),
+        (vec![], "mass11 must be determined by recordings in which both"),
+    ];
+    for (recording, expected) in rejected {
+        let error = calibrate(&recording, drawn(&hardware)).unwrap_err().to_string();
+        assert!(error.starts_with(expected), "{expected}: {error}");
+    }
+}
