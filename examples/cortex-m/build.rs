@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rustc-link-arg-bin=logger=-Tdefmt.x");
     // The learner alone needs 16 KiB.
     println!("cargo:rustc-link-arg-bin=learn=--defsym=RAM_SIZE=32K");
-    println!("cargo:rustc-link-arg-bin=real=--defsym=RAM_SIZE=32K");
+    println!("cargo:rustc-link-arg-bin=real=--defsym=RAM_SIZE=48K");
     // A plan needs 50 kB.
     println!("cargo:rustc-link-arg-bin=balance=--defsym=RAM_SIZE=64K");
     // It has batches in all arithmetics and is never flashed.

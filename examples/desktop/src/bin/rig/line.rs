@@ -1,0 +1,119 @@
+//! The line to a board: a serial port, or a program such as QEMU.
+
+use std::io::{ErrorKind, Read, Write};
+use std::process::{Child, Command as Program, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use anyhow::{Context, anyhow, bail};
+use wire::{Command, Decoder, Error, LONGEST, Message, Reason, VERSION, encode};
+
+/// How long a board may say nothing.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+pub struct Line {
+    port: String,
+    writer: Box<dyn Write + Send>,
+    received: Receiver<std::io::Result<Vec<u8>>>,
+    /// Bytes that were received and not decoded.
+    bytes: std::vec::IntoIter<u8>,
+    decoder: Decoder,
+    program: Option<Child>,
+    /// Frames that were damaged.
+    pub damaged: u32,
+}
+
+impl Line {
+    /// Opens a serial port, or starts the program after `exec:`, and waits until the board answers.
+    pub fn open(port: &str, baud: u32) -> anyhow::Result<Self> {
+        let (reader, writer, program): (Box<dyn Read + Send>, Box<dyn Write + Send>, _) =
+            if let Some(line) = port.strip_prefix("exec:") {
+                let mut words = line.split_whitespace();
+                let mut program = Program::new(words.next().context("no program after exec:")?);
+                let program = program.args(words).stdin(Stdio::piped()).stdout(Stdio::piped());
+                let mut child = program.spawn().with_context(|| format!("cannot start {line}"))?;
+                let (output, input) = (child.stdout.take(), child.stdin.take());
+                (Box::new(output.context(".")?), Box::new(input.context(".")?), Some(child))
+            } else {
+                let serial = serialport::new(port, baud).timeout(Duration::from_millis(100));
+                let serial = serial.open().with_context(|| format!("cannot open {port}"))?;
+                (Box::new(serial.try_clone()?), Box::new(serial), None)
+            };
+        let (sender, received) = channel();
+        thread::spawn(move || read(reader, &sender));
+        let (bytes, decoder) = (Vec::new().into_iter(), Decoder::new());
+        let port = port.to_string();
+        let mut line = Self { port, writer, received, bytes, decoder, program, damaged: 0 };
+        // The 0 ends a frame that another program has begun.
+        line.writer.write_all(&[0])?;
+        line.send(&Command::Stop)?;
+        while line.receive()? != Message::Stopped(Reason::Asked) {}
+        line.damaged = 0;
+        Ok(line)
+    }
+
+    pub fn send(&mut self, command: &Command) -> anyhow::Result<()> {
+        let frame = encode(command, &mut [0; LONGEST]).to_vec();
+        let sent = self.writer.write_all(&frame).and_then(|()| self.writer.flush());
+        sent.with_context(|| format!("cannot send to {}", self.port))
+    }
+
+    /// The next message of the board.
+    pub fn receive(&mut self) -> anyhow::Result<Message> {
+        loop {
+            match self.bytes.by_ref().find_map(|byte| self.decoder.push(byte)) {
+                Some(Ok(message)) => return Ok(message),
+                Some(Err(Error::Version(version))) => bail!(
+                    "the firmware has version {version} of the messages, and this program \
+                     {VERSION}: flash it again"
+                ),
+                Some(Err(Error::Damaged)) => self.damaged += 1,
+                None => self.bytes = self.more()?.into_iter(),
+            }
+        }
+    }
+
+    fn more(&mut self) -> anyhow::Result<Vec<u8>> {
+        let port = &self.port;
+        match self.received.recv_timeout(PATIENCE) {
+            Ok(bytes) => bytes.with_context(|| format!("cannot receive from {port}")),
+            Err(RecvTimeoutError::Timeout) => Err(anyhow!(
+                "nothing comes from {port} for {} s (damaged frames: {}): does the firmware `real` \
+                 run there, at this baud rate?",
+                PATIENCE.as_secs(),
+                self.damaged
+            )),
+            Err(RecvTimeoutError::Disconnected) => Err(anyhow!("{port} has closed the line")),
+        }
+    }
+}
+
+/// Sends what comes, until the line ends.
+fn read(mut reader: impl Read, sender: &std::sync::mpsc::Sender<std::io::Result<Vec<u8>>>) {
+    let mut buffer = [0; 4096];
+    loop {
+        let bytes = match reader.read(&mut buffer) {
+            Ok(0) => return,
+            Ok(count) => Ok(buffer[..count].to_vec()),
+            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {
+                continue;
+            }
+            Err(error) => Err(error),
+        };
+        let is_error = bytes.is_err();
+        if sender.send(bytes).is_err() || is_error {
+            return;
+        }
+    }
+}
+
+impl Drop for Line {
+    fn drop(&mut self) {
+        let _ = self.send(&Command::Stop);
+        if let Some(program) = &mut self.program {
+            let _ = program.kill();
+            let _ = program.wait();
+        }
+    }
+}
