@@ -17,7 +17,6 @@
 use acrobot::Params;
 use acrobot::control::mpc::Settings;
 use crc::{CRC_16_IBM_3740, Crc};
-use postcard::ser_flavors::{Cobs, Slice, crc::CrcModifier};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -140,12 +139,14 @@ pub enum Error {
 
 /// The frame of a message.
 pub fn encode<'a>(message: &impl Serialize, buffer: &'a mut [u8; LONGEST]) -> &'a [u8] {
-    let frame = Cobs::try_new(Slice::new(buffer)).and_then(|frame| {
-        let checked = CrcModifier::new(frame, CRC.digest());
-        postcard::serialize_with_flavor(&(VERSION, message), checked)
-    });
-    // No message is longer than the buffer.
-    frame.map_or(&[], |frame| &*frame)
+    let mut body = [0; LONGEST - 4];
+    // No message is longer than this.
+    let len = postcard::to_slice(&(VERSION, message), &mut body).map_or(0, |used| used.len());
+    let (message, rest) = body.split_at_mut(len);
+    rest[..2].copy_from_slice(&CRC.checksum(message).to_le_bytes());
+    let end = cobs::encode(&body[..len + 2], buffer);
+    buffer[end] = 0;
+    &buffer[..=end]
 }
 
 /// Finds messages in bytes.

@@ -9,8 +9,9 @@ use std::time::Duration;
 use anyhow::{Context, anyhow, bail};
 use wire::{Command, Decoder, Error, LONGEST, Message, Reason, VERSION, encode};
 
-/// How long a board may say nothing.
+/// How long a board may say nothing. A program may have to be compiled first.
 const PATIENCE: Duration = Duration::from_secs(2);
+const COMPILING: Duration = Duration::from_secs(120);
 
 pub struct Line {
     port: String,
@@ -20,6 +21,7 @@ pub struct Line {
     bytes: std::vec::IntoIter<u8>,
     decoder: Decoder,
     program: Option<Child>,
+    patience: Duration,
     /// Frames that were damaged.
     pub damaged: u32,
 }
@@ -44,12 +46,14 @@ impl Line {
         thread::spawn(move || read(reader, &sender));
         let (bytes, decoder) = (Vec::new().into_iter(), Decoder::new());
         let port = port.to_string();
-        let mut line = Self { port, writer, received, bytes, decoder, program, damaged: 0 };
+        let patience = if program.is_some() { COMPILING } else { PATIENCE };
+        let mut line =
+            Self { port, writer, received, bytes, decoder, program, patience, damaged: 0 };
         // The 0 ends a frame that another program has begun.
         line.writer.write_all(&[0])?;
         line.send(&Command::Stop)?;
         while line.receive()? != Message::Stopped(Reason::Asked) {}
-        line.damaged = 0;
+        (line.patience, line.damaged) = (PATIENCE, 0);
         Ok(line)
     }
 
@@ -76,12 +80,12 @@ impl Line {
 
     fn more(&mut self) -> anyhow::Result<Vec<u8>> {
         let port = &self.port;
-        match self.received.recv_timeout(PATIENCE) {
+        match self.received.recv_timeout(self.patience) {
             Ok(bytes) => bytes.with_context(|| format!("cannot receive from {port}")),
             Err(RecvTimeoutError::Timeout) => Err(anyhow!(
                 "nothing comes from {port} for {} s (damaged frames: {}): does the firmware `real` \
                  run there, at this baud rate?",
-                PATIENCE.as_secs(),
+                self.patience.as_secs(),
                 self.damaged
             )),
             Err(RecvTimeoutError::Disconnected) => Err(anyhow!("{port} has closed the line")),
