@@ -135,22 +135,20 @@ def firmware(name, column):
 
 
 def measure_real():
-    """Lets `rig` record, identify and control the machine that it plays, with firmware in QEMU."""
+    """Lets `rig` record, identify and control a machine that it plays, with firmware in QEMU."""
     home = os.environ.get("CARGO_HOME", pathlib.Path.home() / ".cargo")
-    path = image("real", rustflags=f"--remap-path-prefix={home}=")
-    line = f"exec:../../.cargo/qemu arm mps2-an386 {path} -serial stdio -monitor none"
-    machines, (recording, found) = "../desktop", ("target/recording.csv", "target/machine.toml")
-    play = ["--play", f"{machines}/realaigym.toml"]
-    # Built elsewhere, because this folder's configuration of Cargo is for firmware.
-    rig = pathlib.Path("../../target/release/rig").resolve()
-    build = "cargo build --quiet --locked --release -p desktop --bin rig --target-dir target"
-    clean = ["env", "--unset=CARGO_BUILD_TARGET", "--chdir=../.."]
-    run(*clean, *build.split())
-    run(rig, "record", f"{machines}/drawn.toml", line, recording, *play)
-    run(rig, "identify", f"{machines}/drawn.toml", recording, found)
-    lines = re.findall(r"^(\w+) (\w+) (\d+)$", run(rig, "run", found, line, *play), re.MULTILINE)
-    figures = {(column, figure): int(value) for column, figure, value in lines}
-    return figures | {("real", "flash_bytes"): flash(path)}
+    rustflags = f"--remap-path-prefix={home}="
+    # In the root folder, because this one's configuration of Cargo is for firmware.
+    build = "env --unset=CARGO_BUILD_TARGET --chdir=../.. cargo build --quiet --locked --release"
+    run(*build.split(), "-p", "desktop", "--bin", "rig", "--target-dir", "target")
+    rig = functools.partial(run, pathlib.Path("../../target/release/rig"), rustflags=rustflags)
+    machines, recording, found = "../desktop", "target/recording.csv", "target/machine.toml"
+    board = ["exec:./real", "--play", f"{machines}/realaigym.toml"]
+    rig("record", f"{machines}/drawn.toml", *board, recording)
+    rig("identify", f"{machines}/drawn.toml", recording, found)
+    lines = re.findall(r"^real (\w+) (\d+)$", rig("run", found, *board), re.MULTILINE)
+    figures = {("real", figure): int(value) for figure, value in lines}
+    return figures | {("real", "flash_bytes"): flash(image("real", rustflags=rustflags))}
 
 
 def measure_additions():

@@ -135,7 +135,9 @@ pub fn ram() -> u32 {
 
 fn stop() -> ! {
     pac::TIM1.bdtr().modify(|register| register.set_moe(false));
-    loop {} // until the watchdog resets the board
+    loop {
+        cortex_m::asm::nop(); // until the watchdog resets the board
+    }
 }
 
 #[panic_handler]

@@ -32,11 +32,14 @@ impl Line {
         let (reader, writer, program): (Box<dyn Read + Send>, Box<dyn Write + Send>, _) =
             if let Some(line) = port.strip_prefix("exec:") {
                 let mut words = line.split_whitespace();
-                let mut program = Program::new(words.next().context("no program after exec:")?);
+                let mut program = Program::new(words.next().unwrap_or_default());
                 let program = program.args(words).stdin(Stdio::piped()).stdout(Stdio::piped());
-                let mut child = program.spawn().with_context(|| format!("cannot start {line}"))?;
-                let (output, input) = (child.stdout.take(), child.stdin.take());
-                (Box::new(output.context(".")?), Box::new(input.context(".")?), Some(child))
+                let mut child =
+                    program.spawn().with_context(|| format!("cannot start {line:?}"))?;
+                let (Some(output), Some(input)) = (child.stdout.take(), child.stdin.take()) else {
+                    bail!("{line} has no input and output");
+                };
+                (Box::new(output), Box::new(input), Some(child))
             } else {
                 let serial = serialport::new(port, baud).timeout(Duration::from_millis(100));
                 let serial = serial.open().with_context(|| format!("cannot open {port}"))?;
@@ -49,8 +52,8 @@ impl Line {
         let patience = if program.is_some() { COMPILING } else { PATIENCE };
         let mut line =
             Self { port, writer, received, bytes, decoder, program, patience, damaged: 0 };
-        // The 0 ends a frame that another program has begun.
-        line.writer.write_all(&[0])?;
+        // The first ends a frame that another program has begun.
+        line.send(&Command::Stop)?;
         line.send(&Command::Stop)?;
         while line.receive()? != Message::Stopped(Reason::Asked) {}
         (line.patience, line.damaged) = (PATIENCE, 0);

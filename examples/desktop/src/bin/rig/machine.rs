@@ -95,3 +95,18 @@ impl Rig {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As in the pages' table.
+    #[test]
+    fn the_file_has_realaigyms_machine() {
+        let rig = Rig::read(Path::new("realaigym.toml")).unwrap();
+        let (found, expected) = (rig.hardware().unwrap().params, Hardware::realaigym().params);
+        for ((name, found), (_, expected)) in found.numbers().into_iter().zip(expected.numbers()) {
+            assert!(found == expected || (found - expected).abs() < 1e-15, "{name} {found}");
+        }
+    }
+}
