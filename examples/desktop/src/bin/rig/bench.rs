@@ -51,21 +51,25 @@ impl Bench {
                     self.line.send(&Command::Alive)?;
                 }
             }
-            Message::Estimate { .. } => {}
-            Message::Stopped(reason) => bail!(
-                "the board has switched the motor off: {}",
-                match reason {
-                    Reason::Asked => "it was asked to",
-                    Reason::Rejected =>
-                        "it rejects the settings, or has no encoders (`--play` plays the machine)",
-                    Reason::Failed =>
-                        "no motion of the machine explains what the encoders count: is one dead or \
-                     stuck, or does one count, or the motor turn, in the wrong direction?",
-                    Reason::Late => "a tick was not done before the next one: take a longer `dt`",
-                    Reason::Silent => "nothing came from here",
-                }
-            ),
+            // The answer to one of several requests before the command.
+            Message::Stopped(Reason::Asked) | Message::Estimate { .. } => {}
+            Message::Stopped(reason) => bail!("the motor is off: {}", why(reason)),
         }
         Ok(message)
+    }
+}
+
+fn why(reason: Reason) -> &'static str {
+    match reason {
+        Reason::Asked => "the board was asked to",
+        Reason::Rejected => {
+            "the board rejects `dt`, or has no encoders: `--play` plays the machine for it"
+        }
+        Reason::Failed => {
+            "no motion of the machine explains what the encoders count: is one dead or stuck, or \
+             is the sign of a count or of the torque wrong?"
+        }
+        Reason::Late => "a tick was not done before the next one: take a longer `dt`",
+        Reason::Silent => "the board received nothing for half a second",
     }
 }
