@@ -65,8 +65,7 @@ mod app {
         while let Some(before) = real.lock(|real| real.exchange(&mut replanner)) {
             replanner.work();
             cortex_m::asm::wfi();
-            let estimate = real.lock(|real| real.estimate(before));
-            if let Some(message) = estimate {
+            if let Some(message) = real.lock(|real| real.estimate(before)) {
                 real.lock(|real| real.send(&message));
             }
         }
