@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use wire::{LONGEST, Message, Reason, encode};
+
 use crate::Folder;
 
 /// A machine, and one with a parameter that does not exist.
@@ -55,4 +57,37 @@ fn files_are_checked() {
         assert!(!output.status.success() && errors.contains(reason), "{csv}: {errors}");
         assert!(!folder.0.join("out.toml").exists());
     }
+}
+
+/// A board with a machine, which has sent all before it is asked.
+#[test]
+fn a_recording_has_each_tick() {
+    let folder = folder("recording");
+    let frame = |message: &Message| encode(message, &mut [0; LONGEST]).to_vec();
+    let sample = |tick| Message::Sample { tick, counts: [tick as i32, -7], torque: 0.5 };
+    let ready = frame(&Message::Stopped(Reason::Asked));
+    let ticks: Vec<Vec<u8>> = (0..5).map(|tick| frame(&sample(tick))).collect();
+    let (mut lost, mut damaged) = (ticks.clone(), ticks.clone());
+    lost.remove(2);
+    damaged[3][4] ^= 1;
+    let dead = [ticks[..2].concat(), frame(&Message::Stopped(Reason::Failed))].concat();
+    fs::write(folder.0.join("board.sh"), "cat sent; cat >/dev/null").unwrap();
+    let record = |sent: Vec<u8>| {
+        fs::write(folder.0.join("sent"), [&ready[..], &sent].concat()).unwrap();
+        let line = ["record", "drawn.toml", "exec:sh board.sh", "out.csv", "--seconds", "0.01"];
+        String::from_utf8(folder.rig(&line).stderr).unwrap()
+    };
+    for (sent, reason) in [
+        (lost.concat(), "a tick was lost before tick 3"),
+        (damaged.concat(), "a tick was lost before tick 4"),
+        (dead, "the motor is off: no motion of the machine explains what the encoders count"),
+        (ticks[..4].concat(), "nothing comes from exec:sh board.sh for 2 s"),
+    ] {
+        let errors = record(sent);
+        assert!(errors.contains(reason), "{reason}: {errors}");
+        assert!(!folder.0.join("out.csv").exists());
+    }
+    record(ticks.concat());
+    let csv = String::from_utf8(folder.read("out.csv")).unwrap();
+    assert_eq!(csv, "count1,count2,torque\n0,-7,0.5\n1,-7,0.5\n2,-7,0.5\n3,-7,0.5\n4,-7,0.5\n");
 }

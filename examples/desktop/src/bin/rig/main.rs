@@ -94,7 +94,8 @@ fn record(board: &Board, recording: &Path, seconds: f32, part: f32) -> anyhow::R
     let mut bench = board.open()?;
     let (seed, played) = (board.seed, bench.played());
     bench.start(&Command::Record { seed, dt, most, played })?;
-    let (ticks, mut csv) = ((seconds / dt) as u32, format!("{}\n", identify::HEAD));
+    let (ticks, mut csv) = ((seconds / dt).round() as u32, format!("{}\n", identify::HEAD));
+    let (ticks, half_second) = (ticks.max(1), ((0.5 / dt) as u32).max(1));
     loop {
         let Message::Sample { tick, counts: [count1, count2], torque } = bench.receive()? else {
             continue;
@@ -103,7 +104,7 @@ fn record(board: &Board, recording: &Path, seconds: f32, part: f32) -> anyhow::R
         if bench.lost > 0 {
             bail!("a tick was lost before tick {tick}: take a higher baud rate or a longer `dt`");
         }
-        if tick % (0.5 / dt) as u32 == 0 {
+        if tick.is_multiple_of(half_second) {
             eprint!("\r{:3} %", 100 * (tick + 1) / ticks);
         }
         if tick + 1 >= ticks {

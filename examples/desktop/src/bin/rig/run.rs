@@ -54,7 +54,7 @@ pub fn run(board: &Board, options: &Options) -> anyhow::Result<()> {
 
     let dt = f64::from(settings.params.dt);
     let seconds = options.seconds.unwrap_or(if played.is_some() { 10.0 } else { f64::INFINITY });
-    let (half, end) = ((seconds / 2.0 / dt) as u32, (seconds / dt) as u32);
+    let (half, end) = ((seconds / 2.0 / dt).round() as u32, (seconds / dt).round() as u32);
     // The tick after which the machine is upright: before the push, and after it.
     let (mut upright, mut seen, mut shown) = ([0; 2], Seen::default(), Instant::now());
     loop {
@@ -108,8 +108,7 @@ impl Seen {
         let Self { torque, state: State { theta1, theta2, .. }, misses, plan_age, load } = self;
         format!(
             "θ1 {theta1:5.2}, θ2 {theta2:5.2} rad, torque {torque:5.2} N m, plan {plan_age:.2} s \
-             old, misses {misses:.1}, ticks lost {lost}; slowest tick {} cycles, slices of up to \
-             {} ticks",
+             old, misses {misses:.1}, ticks lost {lost}\nslowest tick {} cycles, slices of up to {} ticks",
             load.slowest, load.slice_ticks
         )
     }
