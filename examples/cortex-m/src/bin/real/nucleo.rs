@@ -7,6 +7,8 @@
 //! | PA8 | D7 | PWM of 20 kHz, by timer 1 |
 //! | PA9 | D8 | direction: high for a positive torque |
 //! | PA2, PA3 | USB of the ST-Link | serial line |
+//!
+//! PA8 needs a resistor to ground, because pins float during a reset.
 
 use core::panic::PanicInfo;
 use core::pin::pin;
@@ -134,7 +136,7 @@ pub fn ram() -> u32 {
 }
 
 fn stop() -> ! {
-    pac::TIM1.bdtr().modify(|register| register.set_moe(false));
+    pac::TIM1.ccr(0).write(|duty| duty.set_ccr(0));
     loop {
         cortex_m::asm::nop(); // until the watchdog resets the board
     }

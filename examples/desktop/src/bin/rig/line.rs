@@ -1,12 +1,12 @@
 //! The line to a board: a serial port, or a program such as QEMU.
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::process::{Child, Command as Program, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, anyhow, bail, ensure};
 use wire::{Command, Decoder, Error, LONGEST, Message, Reason, VERSION, encode};
 
 /// How long a board may say nothing. A program may have to be compiled first.
@@ -16,7 +16,7 @@ const COMPILING: Duration = Duration::from_secs(120);
 pub struct Line {
     port: String,
     writer: Box<dyn Write + Send>,
-    received: Receiver<std::io::Result<Vec<u8>>>,
+    received: Receiver<io::Result<Vec<u8>>>,
     /// Bytes that were received and not decoded.
     bytes: std::vec::IntoIter<u8>,
     decoder: Decoder,
@@ -45,7 +45,7 @@ impl Line {
                 let serial = serial.open().with_context(|| format!("cannot open {port}"))?;
                 (Box::new(serial.try_clone()?), Box::new(serial), None)
             };
-        let (sender, received) = channel();
+        let (sender, received) = sync_channel(16);
         thread::spawn(move || read(reader, &sender));
         let (bytes, decoder) = (Vec::new().into_iter(), Decoder::new());
         let port = port.to_string();
@@ -55,7 +55,10 @@ impl Line {
         // The first ends a frame that another program has begun.
         line.send(&Command::Stop)?;
         line.send(&Command::Stop)?;
-        while line.receive()? != Message::Stopped(Reason::Asked) {}
+        let until = Instant::now() + line.patience;
+        while line.receive()? != Message::Stopped(Reason::Asked) {
+            ensure!(Instant::now() < until, "the board at {} does not stop", line.port);
+        }
         (line.patience, line.damaged) = (PATIENCE, 0);
         Ok(line)
     }
@@ -68,6 +71,7 @@ impl Line {
 
     /// The next message of the board.
     pub fn receive(&mut self) -> anyhow::Result<Message> {
+        let until = Instant::now() + self.patience;
         loop {
             match self.bytes.by_ref().find_map(|byte| self.decoder.push(byte)) {
                 Some(Ok(message)) => return Ok(message),
@@ -76,28 +80,38 @@ impl Line {
                      {VERSION}: flash it again"
                 ),
                 Some(Err(Error::Damaged)) => self.damaged += 1,
-                None => self.bytes = self.more()?.into_iter(),
+                None => self.bytes = self.more(until)?.into_iter(),
             }
         }
     }
 
-    fn more(&mut self) -> anyhow::Result<Vec<u8>> {
+    fn more(&mut self, until: Instant) -> anyhow::Result<Vec<u8>> {
         let port = &self.port;
-        match self.received.recv_timeout(self.patience) {
+        // At another baud rate there are bytes, and no message.
+        let left = until.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(self.silence());
+        }
+        match self.received.recv_timeout(left) {
             Ok(bytes) => bytes.with_context(|| format!("cannot receive from {port}")),
-            Err(RecvTimeoutError::Timeout) => Err(anyhow!(
-                "nothing comes from {port} for {} s (damaged frames: {}): does the firmware `real` \
-                 run there, at this baud rate?",
-                self.patience.as_secs(),
-                self.damaged
-            )),
+            Err(RecvTimeoutError::Timeout) => Err(self.silence()),
             Err(RecvTimeoutError::Disconnected) => Err(anyhow!("{port} has closed the line")),
         }
+    }
+
+    fn silence(&self) -> anyhow::Error {
+        anyhow!(
+            "no message comes from {} for {} s (damaged frames: {}): does the firmware `real` run \
+             there, at this baud rate?",
+            self.port,
+            self.patience.as_secs(),
+            self.damaged
+        )
     }
 }
 
 /// Sends what comes, until the line ends.
-fn read(mut reader: impl Read, sender: &std::sync::mpsc::Sender<std::io::Result<Vec<u8>>>) {
+fn read(mut reader: impl Read, sender: &SyncSender<io::Result<Vec<u8>>>) {
     let mut buffer = [0; 4096];
     loop {
         let bytes = match reader.read(&mut buffer) {
