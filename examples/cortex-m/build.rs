@@ -16,10 +16,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo:rustc-link-arg=--defsym=FLASH_ORIGIN=0x80000000");
         println!("cargo:rustc-link-arg=--defsym=RAM_ORIGIN=0x80100000");
     }
+    if env::var_os("CARGO_FEATURE_NUCLEO").is_some() {
+        println!("cargo:rustc-link-arg=--defsym=FLASH_ORIGIN=0x08000000");
+        println!("cargo:rustc-link-arg=--defsym=FLASH_SIZE=512K");
+    }
     println!("cargo:rustc-link-arg-bin=logger=-Tdefmt.x");
     // The learner alone needs 16 KiB.
     println!("cargo:rustc-link-arg-bin=learn=--defsym=RAM_SIZE=32K");
-    println!("cargo:rustc-link-arg-bin=real=--defsym=RAM_SIZE=32K");
+    println!("cargo:rustc-link-arg-bin=real=--defsym=RAM_SIZE=48K");
     // A plan needs 50 kB.
     println!("cargo:rustc-link-arg-bin=balance=--defsym=RAM_SIZE=64K");
     // It has batches in all arithmetics and is never flashed.

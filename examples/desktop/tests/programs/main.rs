@@ -1,5 +1,6 @@
 //! The programs do what their documentation says.
 
+mod rig;
 mod swing_up;
 
 use std::env::consts::EXE_EXTENSION;
@@ -16,6 +17,12 @@ impl Folder {
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir(&folder).unwrap();
         Self(folder)
+    }
+
+    /// Runs `rig`, whose arguments may have spaces.
+    fn rig(&self, arguments: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rig"));
+        command.args(arguments).current_dir(&self.0).output().unwrap()
     }
 
     /// Runs a program with arguments, separated by spaces.
