@@ -1,6 +1,7 @@
 //! Estimates the state of a machine from its angles alone, and its parameters.
 
 mod estimator;
+mod limits;
 mod noise;
 mod parameter_std;
 mod predicted;

@@ -126,6 +126,11 @@ impl<A: Arithmetic> Pendulum<A> {
         Ok(())
     }
 
+    /// Removes the dry friction of joint 2. What else follows from the parameters stays.
+    pub(crate) fn remove_coulomb2(&mut self) {
+        self.model.params.coulomb2 = A::Scalar::ZERO;
+    }
+
     /// As [`set_state`](Self::set_state), with a finite state. Returns its sines and cosines.
     pub(crate) fn set_state_unchecked(
         &mut self,

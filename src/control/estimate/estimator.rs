@@ -327,9 +327,11 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
                 for (covariance, x) in parameter.with_params.iter_mut().zip(with_angle) {
                     *covariance = *covariance - part * x;
                 }
-                *place = within(*place + parameter.deviation * (part * error), parameter.limits);
+                *place = *place + parameter.deviation * (part * error);
             }
         });
+        let [zero1, zero2] = &mut zeros;
+        self.bound(&mut y, estimated(params.numbers_mut(), [zero1, zero2, &mut factor]));
         if K > 0 {
             // What no machine has changes nothing.
             let _ = self.model.set_params(params);
@@ -375,7 +377,7 @@ fn sum<S: Real>(one: S, both: S, other: S) -> S {
     if x > S::ZERO { x } else { S::ZERO } // where rounding made it negative
 }
 
-fn within<S: Real>(x: S, [least, most]: [S; 2]) -> S {
+pub(super) fn within<S: Real>(x: S, [least, most]: [S; 2]) -> S {
     let x = if x < least { least } else { x };
     if x > most { most } else { x }
 }

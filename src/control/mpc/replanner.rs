@@ -22,6 +22,10 @@ const FASTEST: f32 = 4.5;
 const TURNED: f32 = 1.0;
 /// What velocities cost, 1/T for 1/T². Without this a plan that holds waits, and corrects late.
 const SLOW: f32 = 0.01;
+/// What energy costs that is missing after a plan, 1/F², so that a plan which does not reach the
+/// target pumps. And what link 2 costs that turns then, T²: its energy swings nothing up.
+const ENERGY: f32 = 400.0;
+const SPIN: f32 = 10.0;
 /// Plans ignore dry friction below this part of the motor's torque.
 const SMOOTH: f32 = 0.002;
 /// After so many slices, one takes the estimated parameters.
@@ -206,12 +210,14 @@ fn planner(Machine { mut params, limit }: Machine) -> Result<Planner<Arithmetic>
     params.max_velocity1 = FASTEST / time as f32;
     params.max_velocity2 = (FASTEST * Real::sqrt(fastest) as f32).min(TURNED / params.dt);
     let mut problem = Problem::swing_up(params, PLANNED * limit)?;
-    let Cost { q, torque, below, .. } = &mut problem.cost;
+    let Cost { q, qf, torque, below, .. } = &mut problem.cost;
     let [torque_factor, below_factor] = GENTLE;
     *torque *= torque_factor;
     *below *= below_factor;
     let [.., row1, row2] = q;
     row1[2] = SLOW * time as f32;
     row2[3] = SLOW * time as f32;
-    Planner::new(&problem)
+    let [.., row] = qf;
+    row[3] = SPIN * (time * time) as f32;
+    Ok(Planner::new(&problem)?.for_replanning(ENERGY / (force * force) as f32))
 }

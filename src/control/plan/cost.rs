@@ -4,9 +4,9 @@ use crate::arithmetic::Arithmetic;
 use crate::control::regulator::{BoundedRegulator, check_weights};
 use crate::control::units::Units;
 use crate::error::{Error, Range};
-use crate::math::matrix::{add, apply, dot, scale};
+use crate::math::matrix::{add, add_outer, apply, dot, scale};
 use crate::math::{Real, SinCos};
-use crate::physics::{Modeled, Params, State, plus_scaled, positions, wrap};
+use crate::physics::{Modeled, Params, State, directions, plus_scaled, positions, wrap};
 
 /// The weights of what a plan costs: the sum of all terms, over all its steps, and of its end. A
 /// larger weight makes its term smaller, at the expense of the others: [a table of what each
@@ -159,6 +159,11 @@ pub(super) struct Weights<S> {
     /// The first damping: the weight of the torque. The least curvature by a torque. 1/(N m)².
     pub(super) damping: S,
     pub(super) least: S,
+    /// The energy of the target, J, and what the square of its difference costs after a plan, 1/J².
+    energy: S,
+    pub(super) by_energy: S,
+    /// Whether derivatives are those without dry friction of joint 2.
+    pub(super) replans: bool,
 }
 
 impl<S: Real> Weights<S> {
@@ -192,6 +197,9 @@ impl<S: Real> Weights<S> {
             smooth: S::from_f64(SMOOTH * torque / time),
             damping: if cost.torque > damping { cost.torque } else { damping },
             least: S::from_f64(LEAST * curvature),
+            energy: machine.energy(),
+            by_energy: S::ZERO,
+            replans: false,
         }
     }
 
@@ -305,8 +313,33 @@ impl<S: Real> Weights<S> {
     ) -> S {
         let x = regulator.feedback.deviation(end.into());
         let excess = dot(apply(&regulator.cost_to_go, &x), x) / regulator.near;
-        self.cost.arrival * S::from_f64(libm::log1p(excess.to_f64()))
-            + S::HALF * dot(apply(&self.cost.qf, &x), x)
+        let cost = self.cost.arrival * S::from_f64(libm::log1p(excess.to_f64()))
+            + S::HALF * dot(apply(&self.cost.qf, &x), x);
+        let (more, _) = self.excess(regulator, end);
+        cost + self.by_energy * (more * more)
+    }
+
+    /// The energy of a state above that of the target, J, with its slopes.
+    #[inline(never)]
+    fn excess<A: Arithmetic<Scalar = S>>(
+        &self,
+        regulator: &BoundedRegulator<A>,
+        end: [S; 4],
+    ) -> (S, [S; 4]) {
+        let mut machine = regulator.machine.clone();
+        if self.by_energy == S::ZERO || machine.set_state(end.into()).is_err() {
+            return (S::ZERO, [S::ZERO; 4]);
+        }
+        let (sin_cos, constants) = (machine.sin_cos(), machine.model().constants);
+        let [(sin1, _), (sin2, _)] = sin_cos;
+        let [_, (sin_sum, _)] = directions(sin_cos);
+        let [_, _, dtheta1, dtheta2] = end;
+        let fall = constants.gravity2 * sin_sum;
+        let centrifugal = constants.coupling * sin2 * (dtheta1 * (dtheta1 + dtheta2));
+        let [momentum1, momentum2] =
+            machine.mass_matrix().map(|[m1, m2]| m1 * dtheta1 + m2 * dtheta2);
+        let slopes = [constants.gravity1 * sin1 + fall, fall - centrifugal, momentum1, momentum2];
+        (machine.energy() - self.energy, slopes)
     }
 
     /// The slopes of [`arrival`](Self::arrival), the upper triangle of its curvature, and zeros for
@@ -323,7 +356,14 @@ impl<S: Real> Weights<S> {
         let weight = weight / (dot(own, x) + regulator.near);
         let mut curved = self.cost.qf;
         add(&mut curved, weight, &regulator.cost_to_go);
-        let [s1, s2, s3, s4] = plus_scaled(apply(&self.cost.qf, &x), weight, own);
+        let (more, slopes) = self.excess(regulator, end);
+        let by_energy = self.by_energy + self.by_energy;
+        add_outer(&mut curved, by_energy, &slopes, &slopes);
+        let [s1, s2, s3, s4] = plus_scaled(
+            plus_scaled(apply(&self.cost.qf, &x), weight, own),
+            by_energy * more,
+            slopes,
+        );
         let [[p11, p12, p13, p14], [_, p22, p23, p24], [_, _, p33, p34], [.., p44]] = curved;
         let o = S::ZERO;
         [s1, s2, s3, s4, p11, p12, p13, p14, p22, p23, p24, p33, p34, p44, o, o, o, o, o, o]

@@ -136,7 +136,10 @@ impl<A: Arithmetic, V: Numbers<A::Scalar>> Kernel for Backward<'_, A, V> {
     #[inline(always)]
     fn run<const AVX512: bool>(self) {
         let Machine { regulator, weights, .. } = self.machine;
-        let model = *regulator.machine.model();
+        let mut model = *regulator.machine.model();
+        if weights.replans {
+            model.params.coulomb2 = A::Scalar::ZERO;
+        }
         let local = Local { model, limit: regulator.limit, weights: *weights };
         let by_jump = weights.cost.torque_change;
         let (len, dampings) = (self.len, self.damping);

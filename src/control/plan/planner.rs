@@ -100,6 +100,16 @@ impl<A: Arithmetic> Planner<A> {
         self
     }
 
+    /// The same planner for plans that are made again while the machine moves, and may end on the
+    /// way: with a weight of the energy that is then missing or too much, 1/J². The motor overcomes
+    /// the dry friction of its joint, so derivatives are those without it. With it they are those
+    /// of an elbow that sticks, and wrong as soon as it slips.
+    #[must_use]
+    pub(in crate::control) fn for_replanning(mut self, energy: A::Scalar) -> Self {
+        (self.weights.by_energy, self.weights.replans) = (energy, true);
+        self
+    }
+
     /// The regulator of the target, which says from which states it holds.
     #[must_use]
     pub fn regulator(&self) -> &BoundedRegulator<A> {
@@ -234,6 +244,9 @@ impl<A: Arithmetic> Planner<A> {
     pub(super) fn track(&self, plan: &mut [Knot<A::Scalar>]) -> Result<(), Error> {
         let BoundedRegulator { machine, weights: (q, r), cost_to_go, .. } = &self.regulator;
         let (mut model, q, mut cost) = (machine.clone(), spread(*q), *cost_to_go);
+        if self.weights.replans {
+            model.remove_coulomb2();
+        }
         for knot in plan.iter_mut().rev() {
             *knot = Knot { state: knot.state, ..Knot::open(knot.torque) };
             model.set_state(knot.state)?;
