@@ -117,11 +117,17 @@ fn what_is_wrong_with_a_recording_is_named() {
     };
     let delay = calibrate(&late(10), drawn(&hardware)).unwrap().delay;
     assert!((delay - found.delay - 0.020).abs() < 0.001, "{delay}");
+    let early = recording.iter().skip(10).zip(&recording);
+    let early = early.map(|(sample, before)| Sample { torques: before.torques, ..*sample });
     let lost = [&recording[..1000], &recording[1100..]].concat();
     let rejected = [
         (lost, unexplained),
         (late(55), "delay must be below √((length1 + center_of_mass2) / gravity) / 2, in s"),
         (late(80), unexplained),
+        (
+            early.collect(),
+            "delay must be at least 0 (record a torque before it acts), in s, got -0",
+        ),
         (recording[..300].to_vec(), "mass11 must be "),
         (vec![], "mass11 must be determined by recordings in which both"),
     ];
