@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use acrobot::control::identify::{Fit, Regression, Sample};
-use acrobot::{Error, Params};
+use acrobot::Params;
+use acrobot::control::identify::{Calibration, Fit, Sample, calibrate};
 use anyhow::{Context, bail};
 use desktop::write;
 
@@ -30,60 +30,81 @@ pub fn read(path: &Path) -> anyhow::Result<Vec<Row>> {
     lines.enumerate().map(row).collect()
 }
 
-/// The fit, and both counts of hanging: those with the least error of `moment1`.
-fn fit(rows: &[Row], counts: [i32; 2], params: &Params) -> Result<(Fit, [i32; 2]), Error> {
-    let solve = |zeros: [i32; 2]| {
-        let angle = |row: &Row, i: usize| (row[i] - f64::from(zeros[i])) / f64::from(counts[i]);
-        let sample = |row: &Row| Sample {
-            angles: [angle(row, 0) * TAU, angle(row, 1) * TAU],
-            torques: [0.0, row[2]],
-        };
-        let samples: Vec<Sample> = rows.iter().map(sample).collect();
-        let mut regression = Regression::EMPTY;
-        // Velocities from 5 angles, windows of half a second.
-        let window = (0.5 / params.dt) as usize;
-        regression.add(&samples, params.dt, params.gravity, 2, window)?;
-        Ok::<_, Error>(regression.fit())
-    };
-    let (mut zeros, mut found) = ([0; 2], solve([0; 2])?);
-    for step in [16, 8, 4, 2, 1] {
-        for (joint, sign) in [(0, 1), (0, -1), (1, 1), (1, -1)].repeat(4) {
-            let mut moved = zeros;
-            moved[joint] += sign * step;
-            let other = solve(moved)?;
-            if other.std_errors[3] < found.std_errors[3] {
-                (zeros, found) = (moved, other);
-            }
-        }
-    }
-    Ok((found, zeros))
-}
-
-/// Prints the fit, and writes the parameters for `run`, and as Rust and C.
+/// Prints what a recording tells, and writes the machine for `run`, and its settings as Rust and C.
 pub fn identify(drawn: Rig, recording: &Path, out: &Path) -> anyhow::Result<()> {
-    let (rows, given) = (read(recording)?, drawn.params()?);
-    let (fit, zeros) = fit(&rows, drawn.counts, &given)?;
+    let turns = drawn.counts.map(|turn| TAU / f64::from(turn));
+    let sample = |[count1, count2, torque]: Row| Sample {
+        angles: [count1 * turns[0], count2 * turns[1]],
+        torques: [0.0, torque],
+    };
+    let samples: Vec<Sample> = read(recording)?.into_iter().map(sample).collect();
+    let Calibration { params, fit, zeros, delay, prediction_error } =
+        calibrate(&samples, drawn.params()?)
+            .with_context(|| format!("{} identifies no machine", recording.display()))?;
+    let mut rig = drawn.with_params(params);
+    rig.zeros = [0, 1].map(|i| (zeros[i] / turns[i]).round() as i32);
+    rig.delay = delay as f32;
     for ((name, value), error) in Fit::NAMES.iter().zip(fit.values).zip(fit.std_errors) {
         println!("{name:8} {value:9.5} ± {error:.5}");
     }
-    println!("zeros    {zeros:?} counts");
-    let params = fit.params(given).context("shake it more: this recording fits no machine")?;
-    let mut rig = drawn.with_params(params);
-    rig.zeros = zeros;
+    println!("zeros    {:?} counts\ndelay    {delay:9.5} s", rig.zeros);
+    println!("predicts {prediction_error:9.5} rad wrong");
     write(out, toml::to_string(&rig)?)?;
-    write(&out.with_extension("rs"), code(&params, "Params {", false, "    ..Params::DEFAULT\n}"))?;
-    let declaration = "static const acrobot_params_t params = {";
-    write(&out.with_extension("h"), code(&params, declaration, true, "};"))
+    write(&out.with_extension("rs"), code(&rig, &params, false))?;
+    write(&out.with_extension("h"), code(&rig, &params, true))
 }
 
-/// A constant of Rust or C.
-fn code(params: &Params, head: &str, is_c: bool, end: &str) -> String {
-    let field = |(name, value): (&str, f64)| match value {
-        _ if name.contains('[') => String::new(), // torques of actions
-        f64::INFINITY if is_c => format!("    .{name} = {:?}f,\n", f32::MAX),
-        f64::INFINITY => format!("    {name}: f64::INFINITY,\n"),
-        _ if is_c => format!("    .{name} = {:?}f,\n", value as f32),
-        _ => format!("    {name}: {value:?},\n"),
+/// The settings as constants of Rust or C.
+fn code(rig: &Rig, params: &Params, is_c: bool) -> String {
+    let number = |value: f32| match value {
+        f32::INFINITY if is_c => "INFINITY".to_string(),
+        f32::INFINITY => "f32::INFINITY".to_string(),
+        _ if is_c => format!("{value:?}f"),
+        _ => format!("{value:?}"),
     };
-    format!("{head}\n{}{end}\n", params.numbers().into_iter().map(field).collect::<String>())
+    let fields: String = (params.numbers().into_iter())
+        .filter(|(name, _)| !name.contains('[')) // torques of actions
+        .map(|(name, value)| match number(value as f32) {
+            value if is_c => format!("        .{name} = {value},\n"),
+            value => format!("        {name}: {value},\n"),
+        })
+        .collect();
+    let Rig { counts: [turn1, turn2], zeros: [zero1, zero2], .. } = rig;
+    let [limit, delay, plan_timeout] = [rig.limit, rig.delay, rig.plan_timeout].map(number);
+    if is_c {
+        format!(
+            "#include <acrobot.h>
+#include <math.h>
+
+/* Subtract these from the counts. */
+static const int32_t zeros[] = {{{zero1}, {zero2}}};
+static const acrobot_settings_t settings = {{
+    .params = {{
+{fields}    }},
+    .limit = {limit},
+    .counts = {{{turn1}, {turn2}}},
+    .delay = {delay},
+    .plan_timeout = {plan_timeout},
+}};
+"
+        )
+    } else {
+        format!(
+            "use acrobot::Params;
+use acrobot::control::mpc::Settings;
+
+/// Subtract these from the counts.
+pub const ZEROS: [i32; 2] = [{zero1}, {zero2}];
+pub const SETTINGS: Settings = Settings {{
+    params: Params {{
+{fields}        ..Params::DEFAULT
+    }},
+    limit: {limit},
+    counts: [{turn1}, {turn2}],
+    delay: {delay},
+    plan_timeout: {plan_timeout},
+}};
+"
+        )
+    }
 }
