@@ -126,7 +126,9 @@ impl Real {
                 let angles = [0, 1].map(|i| counts[i].wrapping_sub(self.zeros[i]));
                 let before = SYST::get_current();
                 let torque = controller.tick(angles).map_err(|_| Reason::Failed)?;
-                let spent = (before + self.period - SYST::get_current()) % self.period;
+                let now = SYST::get_current();
+                let reloaded = if now > before { self.period } else { 0 };
+                let spent = before + reloaded - now;
                 self.load.slowest = self.load.slowest.max(spent * board::CYCLES_PER_COUNT);
                 torque
             }
