@@ -84,7 +84,7 @@ impl Regression {
         let parabola = half.saturating_mul(2).saturating_add(1);
         // Before each parabola, or after it, are torques that act in its middle.
         let Correction { early, longest, .. } = *correction;
-        let length = longest.saturating_add(parabola).saturating_add(early);
+        let length = early.saturating_add(longest).saturating_add(parabola);
         let windows = samples.windows(length.saturating_add(window));
         for samples in windows.step_by((window / 2).max(1)) {
             let mut rows = [[0.0; N + 1]; 2];

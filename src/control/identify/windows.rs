@@ -123,7 +123,7 @@ pub(super) fn corrected_prediction_error(
     let mut pendulum = Pendulum::<Damped<Portable>>::new(params, State::HANGING)?;
     let (mut squares, mut count) = (0.0, 0.0);
     let Correction { early, longest, .. } = *correction;
-    let length = [fit, horizon, early].into_iter().fold(longest, usize::saturating_add);
+    let length = early.saturating_add(longest).saturating_add(horizon).saturating_add(fit);
     for samples in recording.windows(length).step_by((horizon / 2).max(1)) {
         let angles = samples.get(longest..).unwrap_or(samples);
         let ahead = angles.get(horizon..horizon + fit);
