@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use acrobot::Params;
 use acrobot::control::identify::{Calibration, Fit, Sample, calibrate};
+use acrobot::control::mpc::Settings;
 use anyhow::{Context, bail};
 use desktop::write;
 
@@ -50,61 +50,37 @@ pub fn identify(drawn: Rig, recording: &Path, out: &Path) -> anyhow::Result<()> 
     println!("zeros    {:?} counts\ndelay    {delay:9.5} s", rig.zeros);
     println!("predicts {prediction_error:9.5} rad wrong");
     write(out, toml::to_string(&rig)?)?;
-    write(&out.with_extension("rs"), code(&rig, &params, false))?;
-    write(&out.with_extension("h"), code(&rig, &params, true))
+    let [rust, c] = code(&rig.settings()?, rig.zeros);
+    write(&out.with_extension("rs"), rust)?;
+    write(&out.with_extension("h"), c)
 }
 
-/// The settings as constants of Rust or C.
-fn code(rig: &Rig, params: &Params, is_c: bool) -> String {
-    let number = |value: f32| match value {
-        f32::INFINITY if is_c => "INFINITY".to_string(),
-        f32::INFINITY => "f32::INFINITY".to_string(),
-        _ if is_c => format!("{value:?}f"),
-        _ => format!("{value:?}"),
-    };
-    let fields: String = (params.numbers().into_iter())
-        .filter(|(name, _)| !name.contains('[')) // torques of actions
-        .map(|(name, value)| match number(value as f32) {
-            value if is_c => format!("        .{name} = {value},\n"),
-            value => format!("        {name}: {value},\n"),
-        })
-        .collect();
-    let Rig { counts: [turn1, turn2], zeros: [zero1, zero2], .. } = rig;
-    let [limit, delay, plan_timeout] = [rig.limit, rig.delay, rig.plan_timeout].map(number);
-    if is_c {
-        format!(
-            "#include <acrobot.h>
-#include <math.h>
-
-/* Subtract these from the counts. */
-static const int32_t zeros[] = {{{zero1}, {zero2}}};
-static const acrobot_settings_t settings = {{
-    .params = {{
-{fields}    }},
-    .limit = {limit},
-    .counts = {{{turn1}, {turn2}}},
-    .delay = {delay},
-    .plan_timeout = {plan_timeout},
-}};
-"
-        )
-    } else {
-        format!(
-            "use acrobot::Params;
-use acrobot::control::mpc::Settings;
-
-/// Subtract these from the counts.
-pub const ZEROS: [i32; 2] = [{zero1}, {zero2}];
-pub const SETTINGS: Settings = Settings {{
-    params: Params {{
-{fields}        ..Params::DEFAULT
-    }},
-    limit: {limit},
-    counts: [{turn1}, {turn2}],
-    delay: {delay},
-    plan_timeout: {plan_timeout},
-}};
-"
-        )
+/// The settings as constants of Rust, which prints a struct as it is written, and of C.
+fn code(settings: &Settings, [zero1, zero2]: [i32; 2]) -> [String; 2] {
+    let printed = format!("{settings:#?}");
+    let rust = format!(
+        "use acrobot::Params;\nuse acrobot::control::mpc::Settings;\n\
+         use acrobot::physics::Dynamics::Book;\n\n/// Subtract these from the counts.\n\
+         pub const ZEROS: [i32; 2] = [{zero1}, {zero2}];\n\
+         pub const SETTINGS: Settings = {};\n",
+        printed.replace(" inf,", " f32::INFINITY,")
+    );
+    let mut c = format!(
+        "#include <acrobot.h>\n#include <math.h>\n\n/* Subtract these from the counts. */\n\
+         static const int32_t zeros[] = {{{zero1}, {zero2}}};\n\
+         static const acrobot_settings_t settings = {{\n"
+    );
+    for line in printed.lines().skip(1).filter(|line| !line.contains("dynamics")) {
+        let (indent, field) = line.split_at(line.len() - line.trim_start().len());
+        c += &match field.split_once(": ") {
+            Some((name, value)) if value.contains('.') => {
+                format!("{indent}.{name} = {}\n", value.replace(',', "f,"))
+            }
+            Some((name, value)) => format!("{indent}.{name} = {value}\n"),
+            None => format!("{line}\n"),
+        };
     }
+    let words = [("Params {", "{"), ("= [", "= {"), ("],", "},"), ("inf,", "INFINITY,")];
+    let c = words.iter().fold(c, |c, (rust, word)| c.replace(rust, word));
+    [rust, c.trim_end().to_string() + ";\n"]
 }
