@@ -48,7 +48,7 @@ pub fn identify(drawn: Rig, recording: &Path, out: &Path) -> anyhow::Result<()> 
         println!("{name:8} {value:9.5} ± {error:.5}");
     }
     println!("zeros    {:?} counts\ndelay    {delay:9.5} s", rig.zeros);
-    println!("predicts {prediction_error:9.5} rad wrong");
+    println!("prediction_error {prediction_error:.5} rad");
     write(out, toml::to_string(&rig)?)?;
     let [rust, c] = code(&rig.settings()?, rig.zeros);
     write(&out.with_extension("rs"), rust)?;
