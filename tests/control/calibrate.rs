@@ -8,23 +8,9 @@ use acrobot::numpy::{Pcg64, uniform};
 use acrobot::{Error, Params};
 use machine::{Hardware, Machine, Random};
 
-/// What the encoders say under random torques of up to 0.3 of the motor's.
 fn record(hardware: &Hardware, seconds: f64, seed: u64) -> Vec<Sample> {
-    let mut machine = Machine::new(*hardware, seed).unwrap();
-    let mut rng = Pcg64::new(seed);
-    let (mut samples, mut torque, mut left) = (Vec::new(), 0.0, 0.0);
-    for _ in 0..(seconds / hardware.params.dt) as u32 {
-        if left <= 0.0 {
-            torque = (uniform(&mut rng, -0.3, 0.3) * hardware.limit) as f32;
-            left = uniform(&mut rng, 0.05, 0.4);
-        }
-        left -= hardware.params.dt;
-        let counts = machine.counts().map(|count| f64::from(count) + 0.5);
-        let angles = [0, 1].map(|i| counts[i] / f64::from(hardware.counts[i]) * TAU);
-        samples.push(Sample { angles, torques: [0.0, torque.into()] });
-        machine.step(torque);
-    }
-    samples
+    let ticks = (seconds / hardware.params.dt) as usize;
+    Machine::new(*hardware, seed).unwrap().shake(seed).take(ticks).collect()
 }
 
 /// The lengths, the centres of mass and `dt`. No mass, inertia or friction is known.
@@ -117,11 +103,17 @@ fn what_is_wrong_with_a_recording_is_named() {
     };
     let delay = calibrate(&late(10), drawn(&hardware)).unwrap().delay;
     assert!((delay - found.delay - 0.020).abs() < 0.001, "{delay}");
+    let early = recording.iter().skip(10).zip(&recording);
+    let early = early.map(|(sample, before)| Sample { torques: before.torques, ..*sample });
     let lost = [&recording[..1000], &recording[1100..]].concat();
     let rejected = [
         (lost, unexplained),
         (late(55), "delay must be below √((length1 + center_of_mass2) / gravity) / 2, in s"),
         (late(80), unexplained),
+        (
+            early.collect(),
+            "delay must be at least 0 (record a torque before it acts), in s, got -0",
+        ),
         (recording[..300].to_vec(), "mass11 must be "),
         (vec![], "mass11 must be determined by recordings in which both"),
     ];

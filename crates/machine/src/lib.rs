@@ -7,6 +7,7 @@
 
 mod random;
 mod rehearsal;
+mod shaker;
 
 use core::f64::consts::TAU;
 
@@ -15,6 +16,7 @@ use acrobot::{Error, Params, State};
 
 pub use random::{Random, least_torque};
 pub use rehearsal::Rehearsal;
+pub use shaker::Shaker;
 
 /// The longest step of the integration, s.
 const STEP: f64 = 1e-4;

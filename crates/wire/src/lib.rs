@@ -16,18 +16,20 @@
 
 use acrobot::Params;
 use acrobot::control::mpc::Settings;
-use crc::{CRC_16_IBM_3740, Crc};
+use crc::{CRC_16_IBM_3740, Crc, NoTable};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// The version of these messages, which each frame has.
 pub const VERSION: u8 = 1;
-/// Longer than the longest frame, that of [`Command::Control`].
+/// Longer than the longest frame, that of [`Command::Control`], and so short that COBS adds two
+/// bytes.
 pub const LONGEST: usize = 192;
 /// The board switches its motor off when it has received nothing for so long, s.
 pub const SILENCE: f32 = 0.5;
 
-const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
+/// Without a table, which has 512 bytes of flash.
+const CRC: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_IBM_3740);
 
 /// What the desktop sends.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -139,14 +141,23 @@ pub enum Error {
 
 /// The frame of a message.
 pub fn encode<'a>(message: &impl Serialize, buffer: &'a mut [u8; LONGEST]) -> &'a [u8] {
-    let mut body = [0; LONGEST - 4];
+    *buffer = [0; LONGEST];
     // No message is longer than this.
-    let len = postcard::to_slice(&(VERSION, message), &mut body).map_or(0, |used| used.len());
-    let (message, rest) = body.split_at_mut(len);
-    rest[..2].copy_from_slice(&CRC.checksum(message).to_le_bytes());
-    let end = cobs::encode(&body[..len + 2], buffer);
-    buffer[end] = 0;
-    &buffer[..=end]
+    let body = postcard::to_slice(&(VERSION, message), &mut buffer[1..LONGEST - 3]);
+    let len = body.map_or(0, |body| body.len());
+    let (frame, _) = buffer.split_at_mut((len + 4).min(LONGEST));
+    if let [_, body @ .., crc1, crc2, _] = frame {
+        [*crc1, *crc2] = CRC.checksum(body).to_le_bytes();
+    }
+    // Each 0 becomes the distance to the next one, except the last.
+    let mut distance = 0;
+    for byte in frame.iter_mut().rev() {
+        if *byte == 0 {
+            (*byte, distance) = (distance, 0);
+        }
+        distance += 1;
+    }
+    frame
 }
 
 /// Finds messages in bytes.
@@ -184,11 +195,17 @@ impl Decoder {
 }
 
 fn decode<T: DeserializeOwned>(frame: &mut [u8]) -> Result<T, Error> {
-    let len = cobs::decode_in_place(frame).map_err(|_| Error::Damaged)?;
-    let checked = frame.get(..len).and_then(|body| body.split_last_chunk());
-    let (body, _) = checked
-        .filter(|(body, crc)| CRC.checksum(body) == u16::from_le_bytes(**crc))
-        .ok_or(Error::Damaged)?;
+    let mut distance = 0;
+    for byte in frame.iter_mut() {
+        if distance == 0 {
+            distance = core::mem::take(byte);
+        }
+        distance -= 1;
+    }
+    let [_, body @ .., crc1, crc2] = frame else { return Err(Error::Damaged) };
+    if distance > 0 || CRC.checksum(body) != u16::from_le_bytes([*crc1, *crc2]) {
+        return Err(Error::Damaged);
+    }
     match body {
         [VERSION, message @ ..] => postcard::from_bytes(message).map_err(|_| Error::Damaged),
         [version, ..] => Err(Error::Version(*version)),

@@ -10,6 +10,8 @@ use crate::physics::Params;
 const ZERO: f64 = 0.5;
 // Times as in `windows.rs`, with the least steps. Short windows show a delay best.
 const DELAY: (usize, f64) = (1, 0.5);
+/// How much earlier a torque may act, so that an error names it: a quarter of this is an error.
+const EARLY: (usize, f64) = (1, 0.1);
 const HALF: (usize, f64) = (1, 0.005);
 const WINDOW: (usize, f64) = (8, 0.93);
 const AHEAD: (usize, f64) = (8, 1.0);
@@ -75,7 +77,8 @@ pub struct Calibration {
 ///
 /// The errors of [`Regression::add`] and of [`Fit::params`]. More than 3 % of the torques is
 /// unexplained, or a number is not known within 3 %. An angle or the torque has the wrong sign, or
-/// the second angle is not that from link 1. A zero or the delay is at the end of its range.
+/// the second angle is not that from link 1. A zero or the delay is at the end of its range, or
+/// torques act before they are recorded.
 pub fn calibrate(recording: &[Sample], given: Params) -> Result<Calibration, Error> {
     let (mut correction, mut least) = (Correction::NONE, f64::INFINITY);
     for theta2 in FRAMES {
@@ -101,7 +104,7 @@ pub fn calibrate(recording: &[Sample], given: Params) -> Result<Calibration, Err
         params: fit.params(given)?,
         fit,
         zeros: correction.zeros,
-        delay: correction.delay * given.dt,
+        delay: correction.delay.max(0.0) * given.dt,
         prediction_error: corrected_prediction_error(of_first, last, ahead, &correction)?,
     })
 }
@@ -124,16 +127,19 @@ fn search(
     given: &Params,
     theta2: [f64; 2],
 ) -> Result<(Correction, f64), Error> {
-    let longest = in_steps(given, DELAY);
+    let (early, longest) = (in_steps(given, EARLY), in_steps(given, DELAY));
+    let (least_delay, range) = (-(early as f64), (early + longest) as f64);
     let correction = |[zero1, zero2, delay]: [f64; 3]| Correction {
         zeros: [ZERO * zero1, ZERO * zero2],
         theta2,
-        delay: 0.5 * (1.0 + delay) * longest as f64,
+        delay: least_delay + 0.5 * (1.0 + delay) * range,
+        early,
         longest,
     };
     let unexplained =
         |at| Ok::<_, Error>(regress(recording, given, &correction(at))?.unexplained());
-    let (mut at, mut change) = ([0.0, 0.0, -1.0], 0.25);
+    // Without a delay.
+    let (mut at, mut change) = ([0.0, 0.0, -2.0 * least_delay / range - 1.0], 0.25);
     let mut least = unexplained(at)?;
     for _ in 0..SWEEPS {
         let before = least;
@@ -185,6 +191,10 @@ fn check(found: &Correction, unexplained: f64, fit: &Fit, dt: f64) -> Result<(),
         if zero.abs() >= ZERO {
             return out_of_range(name, zero, "rad", "between -0.5 and 0.5");
         }
+    }
+    if found.delay < -0.25 * found.early as f64 {
+        let rule = "at least 0 (record a torque before it acts), in";
+        return out_of_range("delay", found.delay * dt, "s", rule);
     }
     if found.delay >= found.longest as f64 {
         let rule = "below √((length1 + center_of_mass2) / gravity) / 2, in";

@@ -26,22 +26,23 @@ pub(super) struct Correction {
     pub(super) zeros: [f64; 2],
     /// θ2 is the sum of these parts of the recorded angles.
     pub(super) theta2: [f64; 2],
-    /// A torque begins to act so many samples after it was recorded, and this is the most that is
-    /// tried.
+    /// A torque begins to act so many samples after it was recorded: from -`early` to `longest`.
     pub(super) delay: f64,
+    pub(super) early: usize,
     pub(super) longest: usize,
 }
 
 impl Correction {
     pub(super) const NONE: Self =
-        Self { zeros: [0.0; 2], theta2: [0.0, 1.0], delay: 0.0, longest: 0 };
+        Self { zeros: [0.0; 2], theta2: [0.0, 1.0], delay: 0.0, early: 0, longest: 0 };
 
     /// The mean of the torques that act from a part of a sample before this one, for a sample.
     pub(super) fn torques(&self, samples: &[Sample], at: usize, before: f64) -> [f64; 2] {
-        let ago = self.delay + before;
+        // Before the last sample that may act here.
+        let ago = self.early as f64 + self.delay + before;
         let part = ago - ago as usize as f64;
         let sent = |ago: usize| {
-            let sample = at.checked_sub(ago).and_then(|at| samples.get(at));
+            let sample = (at + self.early).checked_sub(ago).and_then(|at| samples.get(at));
             sample.map_or([0.0; 2], |sample| sample.torques)
         };
         let ([later1, later2], [earlier1, earlier2]) = (sent(ago as usize), sent(ago as usize + 1));

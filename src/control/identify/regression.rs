@@ -82,8 +82,9 @@ impl Regression {
         }
         let mut sum = self.clone();
         let parabola = half.saturating_mul(2).saturating_add(1);
-        // Before each parabola are torques that still act in its middle.
-        let length = correction.longest.saturating_add(parabola);
+        // Before each parabola, or after it, are torques that act in its middle.
+        let Correction { early, longest, .. } = *correction;
+        let length = early.saturating_add(longest).saturating_add(parabola);
         let windows = samples.windows(length.saturating_add(window));
         for samples in windows.step_by((window / 2).max(1)) {
             let mut rows = [[0.0; N + 1]; 2];
@@ -92,9 +93,9 @@ impl Regression {
                 let p = z * (1.0 - z);
                 // 16 p² and its slope.
                 let (weight, slope) = (16.0 * p * p, 32.0 * p * (1.0 - 2.0 * z) / window as f64);
-                let parabola = around.get(correction.longest..).unwrap_or(around);
+                let parabola = around.get(longest..longest + parabola).unwrap_or(around);
                 // The mean from half a sample before to half a one later: torques are held.
-                let torques = correction.torques(around, correction.longest + half, 0.5);
+                let torques = correction.torques(around, longest + half, 0.5);
                 let terms = terms(correction.motion(parabola, dt), torques, gravity);
                 for (row, (momentum, force)) in rows.iter_mut().zip(terms) {
                     for ((x, momentum), force) in row.iter_mut().zip(momentum).zip(force) {

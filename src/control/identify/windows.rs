@@ -122,11 +122,12 @@ pub(super) fn corrected_prediction_error(
     let fit = 2 * half + 1;
     let mut pendulum = Pendulum::<Damped<Portable>>::new(params, State::HANGING)?;
     let (mut squares, mut count) = (0.0, 0.0);
-    let longest = correction.longest;
-    let length = longest.saturating_add(fit).saturating_add(horizon);
+    let Correction { early, longest, .. } = *correction;
+    let length = early.saturating_add(longest).saturating_add(horizon).saturating_add(fit);
     for samples in recording.windows(length).step_by((horizon / 2).max(1)) {
         let angles = samples.get(longest..).unwrap_or(samples);
-        let (Some(first), Some(last)) = (angles.get(..fit), angles.get(horizon..)) else { break };
+        let ahead = angles.get(horizon..horizon + fit);
+        let (Some(first), Some(last)) = (angles.get(..fit), ahead) else { break };
         let [[theta1, theta2], [dtheta1, dtheta2]] = correction.motion(first, params.dt);
         pendulum.set_state(State { theta1, theta2, dtheta1, dtheta2 })?;
         for step in 0..horizon {

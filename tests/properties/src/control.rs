@@ -2,13 +2,13 @@
 
 use std::array::from_fn;
 
-use acrobot::Error;
-use acrobot::arithmetic::Real;
+use acrobot::arithmetic::{Damped, Real};
 use acrobot::control::estimate::{Estimator, Noise, ParameterEstimator, ParameterStd};
-use acrobot::control::identify::{Regression, Sample};
+use acrobot::control::identify::{Calibration, Regression, Sample, calibrate};
 use acrobot::control::model::{LinearModel, StepModel};
 use acrobot::control::regulator::{dlqe, dlqr, lqr};
 use acrobot::physics::Pendulum;
+use acrobot::{Error, Params, Portable, State};
 use common::in_every_arithmetic;
 use proptest::prelude::*;
 
@@ -114,6 +114,33 @@ fn no_recording_gives_nan() {
         assert!(found.weakest.iter().all(|x| x.is_finite()));
         assert!(found.values.iter().all(|x| !x.is_nan()));
         assert!(found.std_errors.iter().all(|x| *x >= 0.0));
+        assert_finite(calibrate(&samples, Params { dt, gravity, ..Params::SWINGUP }));
+    });
+}
+
+fn assert_finite(result: Result<Calibration, Error>) {
+    if let Ok(Calibration { params, fit, zeros, delay, prediction_error }) = result {
+        params.validate().unwrap();
+        let numbers = [&zeros[..], &[delay, prediction_error], &fit.values].concat();
+        assert!(numbers.iter().all(|x| x.is_finite()));
+    }
+}
+
+#[test]
+fn calibrations_of_machines_are_finite_or_errors() {
+    type A = Damped<Portable>;
+    let torques = prop::collection::vec(-3.0..3.0, 0..80);
+    let given = (0.2..2.0, 0.2..2.0, 0.005..0.02, torques);
+    holds(50, given, |(mass1, mass2, dt, torques)| {
+        let given = Params { mass1, mass2, dt, ..Params::SWINGUP };
+        let mut pendulum = Pendulum::<A>::new(given, State::HANGING).unwrap();
+        let sample = |i: usize| {
+            let State { theta1, theta2, .. } = pendulum.state();
+            let _ = pendulum.step(torques[i / 10]);
+            Sample { angles: [theta1, theta2], torques: [0.0, torques[i / 10]] }
+        };
+        let samples: Vec<Sample> = (0..10 * torques.len()).map(sample).collect();
+        assert_finite(calibrate(&samples, given));
     });
 }
 

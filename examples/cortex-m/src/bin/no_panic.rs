@@ -16,7 +16,7 @@ use acrobot::batch::{
     Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams, StepBuffers, Storage,
 };
 use acrobot::control::estimate::{Estimator, Noise, ParameterEstimator, ParameterStd};
-use acrobot::control::identify::{Regression, Sample, identify, prediction_error};
+use acrobot::control::identify::{Regression, Sample, calibrate, identify, prediction_error};
 use acrobot::control::plan::{Knot, Planner, Problem, SwingUp};
 use acrobot::control::regulator::{dlqe, dlqr, lqr, tvlqr};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
@@ -292,8 +292,9 @@ fn identification() {
     let _ = black_box(regression.add(black_box(&samples), number(), number(), half, window));
     let _ = black_box(regression.fit().params(params()));
     let found = identify(&[black_box(&samples)], params());
+    let calibrated = calibrate(black_box(&samples), params());
     let horizon = black_box(3);
-    let _ = black_box((found, prediction_error(params(), &samples, horizon)));
+    let _ = black_box((found, calibrated, prediction_error(params(), &samples, horizon)));
 }
 
 /// A policy from a file that is read at run time.

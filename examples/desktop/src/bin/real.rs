@@ -9,9 +9,7 @@
 //!
 //! docs/real.md has the table that it prints, and explains it.
 
-use std::f64::consts::TAU;
-
-use acrobot::control::identify::{Regression, Sample};
+use acrobot::control::identify::{Calibration, calibrate};
 use acrobot::control::mpc::Settings;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::{Error, Params};
@@ -96,43 +94,45 @@ fn advise(Hardware { params, limit, delay, lag, .. }: &Hardware) {
 }
 
 /// What the controller believes of a machine.
-type Model = fn(&Hardware, u64) -> Result<Params, Error>;
+struct Belief {
+    params: Params,
+    delay: f64,
+    zeros: [f64; 2],
+}
+
+type Model = fn(&Hardware, u64) -> Result<Belief, Error>;
 
 /// The motion of a machine between pushes: seconds until upright, if it then stays there.
 type Motion = [Option<f64>; PUSHES.len()];
 
-/// Shakes a machine for 10 s with up to half of the motor's torque, and identifies it from what
-/// the encoders counted.
-fn identified(hardware: &Hardware, seed: u64) -> Result<Params, Error> {
-    let (truth, half) = (hardware.params, hardware.limit / 2.0);
-    let (mut machine, mut rng) = (Machine::new(*hardware, seed)?, Pcg64::new(seed));
-    let (mut recording, mut torque, mut left) = (Vec::new(), 0.0, 0.0);
-    for _ in 0..(SECONDS / truth.dt) as u32 {
-        if left <= 0.0 {
-            (torque, left) = (uniform(&mut rng, -half, half) as f32, uniform(&mut rng, 0.05, 0.4));
-        }
-        left -= truth.dt;
-        let turn = f64::from(hardware.counts[0]);
-        let angles = machine.counts().map(|count| (f64::from(count) + 0.5) / turn * TAU);
-        recording.push(Sample { angles, torques: [0.0, torque.into()] });
-        machine.step(torque);
-    }
-    let mut regression = Regression::EMPTY;
-    regression.add(&recording, truth.dt, truth.gravity, 2, (0.5 / truth.dt) as usize)?;
-    // Masses, inertias and friction as drawn do not count, except for centres of mass.
-    regression.fit().params(Params { mass1: 1.0, mass2: 1.0, ..truth })
+fn the_true_one(&Hardware { params, delay, lag, .. }: &Hardware, _: u64) -> Result<Belief, Error> {
+    Ok(Belief { params, delay: delay + lag, zeros: [0.0; 2] })
+}
+
+/// Of the true parameters only the lengths and the centres of mass count.
+fn identified(hardware: &Hardware, seed: u64) -> Result<Belief, Error> {
+    let ticks = (SECONDS / hardware.params.dt) as usize;
+    let recording: Vec<_> = Machine::new(*hardware, seed)?.shake(seed).take(ticks).collect();
+    let Calibration { params, delay, zeros, .. } = calibrate(&recording, hardware.params)?;
+    Ok(Belief { params, delay, zeros })
+}
+
+fn without_friction(hardware: &Hardware, seed: u64) -> Result<Belief, Error> {
+    let mut belief = the_true_one(hardware, seed)?;
+    let (damping1, damping2, coulomb1, coulomb2) = (0.0, 0.0, 0.0, 0.0);
+    belief.params = Params { damping1, damping2, coulomb1, coulomb2, ..belief.params };
+    Ok(belief)
 }
 
 fn control(hardware: &Hardware, seed: u64, slice: u32, model: Model) -> Result<Motion, Error> {
-    let &Hardware { limit, counts, delay, lag, .. } = hardware;
-    let settings = Settings {
-        params: model(hardware, seed)?.cast(),
-        limit: limit as f32,
-        counts,
-        delay: (delay + lag) as f32,
-        plan_timeout: 1.0,
-    };
-    let mut rehearsal = Rehearsal::new(Machine::new(*hardware, seed)?, settings, slice)?;
+    let Belief { params, delay, zeros } = model(hardware, seed)?;
+    let &Hardware { limit, counts, .. } = hardware;
+    let (params, limit, delay) = (params.cast(), limit as f32, delay as f32);
+    let settings = Settings { params, limit, counts, delay, plan_timeout: 1.0 };
+    // The controller gets counts from which these zeros are subtracted.
+    let [zero1, zero2] = hardware.zeros;
+    let hardware = Hardware { zeros: [zero1 - zeros[0], zero2 - zeros[1]], ..*hardware };
+    let mut rehearsal = Rehearsal::new(Machine::new(hardware, seed)?, settings, slice)?;
     let (mut motion, mut rng) = (Motion::default(), Pcg64::new(seed + 1000));
     for (time, push) in motion.iter_mut().zip(PUSHES) {
         // An error switches the motor off.
@@ -160,12 +160,9 @@ fn main() -> anyhow::Result<()> {
     println!("| model | upright of {count} | after a push of 1 rad/s | of 6 rad/s |");
     println!("|---|---|---|---|");
     let models: [(&str, Model); 3] = [
-        ("the true one", |hardware, _| Ok(hardware.params)),
+        ("the true one", the_true_one),
         ("identified", identified),
-        ("without friction", |hardware, _| {
-            let (damping1, damping2, coulomb1, coulomb2) = (0.0, 0.0, 0.0, 0.0);
-            Ok(Params { damping1, damping2, coulomb1, coulomb2, ..hardware.params })
-        }),
+        ("without friction", without_friction),
     ];
     for (name, model) in models {
         let seeds = (first..first + count).into_par_iter();

@@ -1,9 +1,9 @@
 //! What the interrupt does.
 
 use acrobot::control::mpc::{Controller, Replanner, Settings};
-use acrobot::numpy::{Pcg64, uniform};
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{SCB, SYST};
+use machine::Shaker;
 use wire::{Command, Decoder, LONGEST, Load, Message, Reason, SILENCE, encode};
 
 use crate::board::{self, Board};
@@ -16,27 +16,6 @@ enum Task {
     None,
     Record(Shaker),
     Control(Controller<100>),
-}
-
-/// Random torques.
-struct Shaker {
-    rng: Pcg64,
-    most: f64,
-    dt: f64,
-    torque: f32,
-    /// How long the torque still holds, s.
-    left: f64,
-}
-
-impl Shaker {
-    fn torque(&mut self) -> f32 {
-        if self.left <= 0.0 {
-            self.torque = uniform(&mut self.rng, -self.most, self.most) as f32;
-            self.left = uniform(&mut self.rng, 0.05, 0.4);
-        }
-        self.left -= self.dt;
-        self.torque
-    }
 }
 
 pub struct Real {
@@ -99,8 +78,7 @@ impl Real {
     pub fn start(&mut self) -> Option<Settings> {
         let (task, dt, zeros, played, settings) = match self.command.take()? {
             Command::Record { seed, dt, most, played } => {
-                let (rng, most) = (Pcg64::new(seed), f64::from(most));
-                let shaker = Shaker { rng, most, dt: dt.into(), torque: 0.0, left: 0.0 };
+                let shaker = Shaker::new(seed, most.into(), dt.into());
                 (Task::Record(shaker), dt, [0; 2], played, None)
             }
             Command::Control { settings, zeros, played } => {
@@ -148,7 +126,9 @@ impl Real {
                 let angles = [0, 1].map(|i| counts[i].wrapping_sub(self.zeros[i]));
                 let before = SYST::get_current();
                 let torque = controller.tick(angles).map_err(|_| Reason::Failed)?;
-                let spent = (before + self.period - SYST::get_current()) % self.period;
+                let now = SYST::get_current();
+                let reloaded = if now > before { self.period } else { 0 };
+                let spent = before + reloaded - now;
                 self.load.slowest = self.load.slowest.max(spent * board::CYCLES_PER_COUNT);
                 torque
             }

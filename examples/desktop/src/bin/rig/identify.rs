@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use acrobot::control::identify::{Fit, Regression, Sample};
-use acrobot::{Error, Params};
+use acrobot::control::identify::{Calibration, Fit, Sample, calibrate};
+use acrobot::control::mpc::Settings;
 use anyhow::{Context, bail};
 use desktop::write;
 
@@ -30,60 +30,57 @@ pub fn read(path: &Path) -> anyhow::Result<Vec<Row>> {
     lines.enumerate().map(row).collect()
 }
 
-/// The fit, and both counts of hanging: those with the least error of `moment1`.
-fn fit(rows: &[Row], counts: [i32; 2], params: &Params) -> Result<(Fit, [i32; 2]), Error> {
-    let solve = |zeros: [i32; 2]| {
-        let angle = |row: &Row, i: usize| (row[i] - f64::from(zeros[i])) / f64::from(counts[i]);
-        let sample = |row: &Row| Sample {
-            angles: [angle(row, 0) * TAU, angle(row, 1) * TAU],
-            torques: [0.0, row[2]],
-        };
-        let samples: Vec<Sample> = rows.iter().map(sample).collect();
-        let mut regression = Regression::EMPTY;
-        // Velocities from 5 angles, windows of half a second.
-        let window = (0.5 / params.dt) as usize;
-        regression.add(&samples, params.dt, params.gravity, 2, window)?;
-        Ok::<_, Error>(regression.fit())
-    };
-    let (mut zeros, mut found) = ([0; 2], solve([0; 2])?);
-    for step in [16, 8, 4, 2, 1] {
-        for (joint, sign) in [(0, 1), (0, -1), (1, 1), (1, -1)].repeat(4) {
-            let mut moved = zeros;
-            moved[joint] += sign * step;
-            let other = solve(moved)?;
-            if other.std_errors[3] < found.std_errors[3] {
-                (zeros, found) = (moved, other);
-            }
-        }
-    }
-    Ok((found, zeros))
-}
-
-/// Prints the fit, and writes the parameters for `run`, and as Rust and C.
+/// Prints what a recording tells, and writes the machine for `run`, and its settings as Rust and C.
 pub fn identify(drawn: Rig, recording: &Path, out: &Path) -> anyhow::Result<()> {
-    let (rows, given) = (read(recording)?, drawn.params()?);
-    let (fit, zeros) = fit(&rows, drawn.counts, &given)?;
+    let turns = drawn.counts.map(|turn| TAU / f64::from(turn));
+    let sample = |[count1, count2, torque]: Row| Sample {
+        angles: [count1 * turns[0], count2 * turns[1]],
+        torques: [0.0, torque],
+    };
+    let samples: Vec<Sample> = read(recording)?.into_iter().map(sample).collect();
+    let Calibration { params, fit, zeros, delay, prediction_error } =
+        calibrate(&samples, drawn.params()?)
+            .with_context(|| format!("{} identifies no machine", recording.display()))?;
+    let mut rig = drawn.with_params(params);
+    rig.zeros = [0, 1].map(|i| (zeros[i] / turns[i]).round() as i32);
+    rig.delay = delay as f32;
     for ((name, value), error) in Fit::NAMES.iter().zip(fit.values).zip(fit.std_errors) {
         println!("{name:8} {value:9.5} ± {error:.5}");
     }
-    println!("zeros    {zeros:?} counts");
-    let params = fit.params(given).context("shake it more: this recording fits no machine")?;
-    let mut rig = drawn.with_params(params);
-    rig.zeros = zeros;
+    println!("zeros    {:?} counts\ndelay    {delay:9.5} s", rig.zeros);
+    println!("prediction_error {prediction_error:.5} rad");
     write(out, toml::to_string(&rig)?)?;
-    write(&out.with_extension("rs"), code(&params, "Params {", false, "    ..Params::DEFAULT\n}"))?;
-    let declaration = "static const acrobot_params_t params = {";
-    write(&out.with_extension("h"), code(&params, declaration, true, "};"))
+    let [rust, c] = code(&rig.settings()?, rig.zeros);
+    write(&out.with_extension("rs"), rust)?;
+    write(&out.with_extension("h"), c)
 }
 
-/// A constant of Rust or C.
-fn code(params: &Params, head: &str, is_c: bool, end: &str) -> String {
-    let field = |(name, value): (&str, f64)| match value {
-        _ if name.contains('[') => String::new(), // torques of actions
-        f64::INFINITY if is_c => format!("    .{name} = {:?}f,\n", f32::MAX),
-        f64::INFINITY => format!("    {name}: f64::INFINITY,\n"),
-        _ if is_c => format!("    .{name} = {:?}f,\n", value as f32),
-        _ => format!("    {name}: {value:?},\n"),
-    };
-    format!("{head}\n{}{end}\n", params.numbers().into_iter().map(field).collect::<String>())
+/// The settings as constants of Rust, which prints a struct as it is written, and of C.
+fn code(settings: &Settings, [zero1, zero2]: [i32; 2]) -> [String; 2] {
+    let printed = format!("{settings:#?}");
+    let rust = format!(
+        "use acrobot::Params;\nuse acrobot::control::mpc::Settings;\n\
+         use acrobot::physics::Dynamics::Book;\n\n/// Subtract these from the counts.\n\
+         pub const ZEROS: [i32; 2] = [{zero1}, {zero2}];\n\
+         pub const SETTINGS: Settings = {};\n",
+        printed.replace(" inf,", " f32::INFINITY,")
+    );
+    let mut c = format!(
+        "#include <acrobot.h>\n#include <math.h>\n\n/* Subtract these from the counts. */\n\
+         static const int32_t zeros[] = {{{zero1}, {zero2}}};\n\
+         static const acrobot_settings_t settings = {{\n"
+    );
+    for line in printed.lines().skip(1).filter(|line| !line.contains("dynamics")) {
+        let (indent, field) = line.split_at(line.len() - line.trim_start().len());
+        c += &match field.split_once(": ") {
+            Some((name, value)) if value.contains('.') => {
+                format!("{indent}.{name} = {}\n", value.replace(',', "f,"))
+            }
+            Some((name, value)) => format!("{indent}.{name} = {value}\n"),
+            None => format!("{line}\n"),
+        };
+    }
+    let words = [("Params {", "{"), ("= [", "= {"), ("],", "},"), ("inf,", "INFINITY,")];
+    let c = words.iter().fold(c, |c, (rust, word)| c.replace(rust, word));
+    [rust, c.trim_end().to_string() + ";\n"]
 }

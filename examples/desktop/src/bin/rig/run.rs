@@ -108,7 +108,8 @@ impl Seen {
         let Self { torque, state: State { theta1, theta2, .. }, misses, plan_age, load } = self;
         format!(
             "θ1 {theta1:5.2}, θ2 {theta2:5.2} rad, torque {torque:5.2} N m, plan {plan_age:.2} s \
-             old, misses {misses:.1}, ticks lost {lost}\nslowest tick {} cycles, slices of up to {} ticks",
+             old, misses {misses:.1}, ticks lost {lost}\n\
+             slowest tick {} cycles, slices of up to {} ticks",
             load.slowest, load.slice_ticks
         )
     }
