@@ -16,7 +16,7 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
             };
             let excess = within(**value, own.limits) - **value;
             let variance = own.deviation * *variance;
-            if excess.abs() > A::Scalar::ZERO && variance > A::Scalar::ZERO {
+            if excess != A::Scalar::ZERO && variance > A::Scalar::ZERO {
                 let part = excess / variance;
                 add_scaled(y, part, &own.with_state);
                 let others = self.parameters.iter().zip(own.with_params);
