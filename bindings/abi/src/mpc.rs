@@ -68,7 +68,7 @@ impl Holder for acrobot_controller_t {
 }
 
 /// Bytes of an acrobot_replanner_t.
-pub const ACROBOT_REPLANNER_SIZE: usize = 5376;
+pub const ACROBOT_REPLANNER_SIZE: usize = 5392;
 
 /// What the main loop does: it plans for the estimated machine while this moves. Call
 /// acrobot_replanner_init first. You may copy and move it.

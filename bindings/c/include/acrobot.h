@@ -121,7 +121,7 @@
 #define ACROBOT_CONTROLLER_SIZE 5776
 
 // Bytes of an acrobot_replanner_t.
-#define ACROBOT_REPLANNER_SIZE 5376
+#define ACROBOT_REPLANNER_SIZE 5392
 
 // Alignment of a batch's memory.
 #define ACROBOT_BATCH_ALIGN 64

@@ -276,8 +276,10 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         // Dry friction at rest can be any torque, so a machine at rest says nothing on parameters.
         // Their covariances with the state follow, as in a Schmidt-Kalman filter.
         let is_resting = y[2].abs() < slow && y[3].abs() < slow;
+        let (dt, [zero1, zero2]) = (params.dt, &mut zeros);
+        let mut values = estimated(params.numbers_mut(), [zero1, zero2, &mut factor]);
         angles.into_iter().enumerate().for_each(|(i, angle)| {
-            let error = wrap(angle - zeros[i] - y[i]);
+            let error = wrap(angle - *values[ZEROS[i]] - y[i]);
             let square = error * error;
             let (mut with_zero, mut of_zero) = self.of_zero(i);
             // The variance of the torque follows the errors.
@@ -289,7 +291,7 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
             self.misses = self.misses * number(FORGETS) + if is_miss { one } else { zero };
             if is_miss {
                 // The velocities are in doubt by as much as the error needs in one step.
-                let of_velocity = square / (params.dt * params.dt);
+                let of_velocity = square / (dt * dt);
                 let [of_angle1, of_angle2, ..] =
                     diagonal(&of_state).map(|x| if x > square { x } else { square });
                 of_state = spread([of_angle1, of_angle2, of_velocity, of_velocity]);
@@ -311,14 +313,12 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
                 of_state[i][i] = before * of_angle * inverse; // the same, without cancellation
             }
             let deviation = self.parameters.get(ZEROS[i]).map_or(zero, |own| own.deviation);
-            let with_angle = self.parameters.map(|parameter| {
+            let with_angle = self.parameters.each_ref().map(|parameter| {
                 let with_zero = parameter.with_params.get(ZEROS[i]).copied().unwrap_or(zero);
                 parameter.with_state[i] + deviation * with_zero
             });
-            let [zero1, zero2] = &mut zeros;
-            let places = estimated(params.numbers_mut(), [zero1, zero2, &mut factor]);
-            let places = places.into_iter().zip(with_angle);
-            for (parameter, (place, x)) in self.parameters.iter_mut().zip(places) {
+            let values = values.iter_mut().zip(with_angle);
+            for (parameter, (value, x)) in self.parameters.iter_mut().zip(values) {
                 add_scaled(&mut parameter.with_state, -x, &gain);
                 if is_resting {
                     continue;
@@ -327,11 +327,10 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
                 for (covariance, x) in parameter.with_params.iter_mut().zip(with_angle) {
                     *covariance = *covariance - part * x;
                 }
-                *place = *place + parameter.deviation * (part * error);
+                **value = **value + parameter.deviation * (part * error);
             }
         });
-        let [zero1, zero2] = &mut zeros;
-        self.bound(&mut y, estimated(params.numbers_mut(), [zero1, zero2, &mut factor]));
+        self.bound(&mut y, values);
         if K > 0 {
             // What no machine has changes nothing.
             let _ = self.model.set_params(params);

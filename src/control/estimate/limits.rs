@@ -10,6 +10,7 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     /// Moves parameters into their limits, and what they vary with as the covariances say. Without
     /// that a friction that is 0 would make masses and zeros wander.
     pub(super) fn bound(&self, y: &mut [A::Scalar; 4], mut values: [&mut A::Scalar; PARAMETERS]) {
+        let mut is_bound = false;
         for (i, own) in self.parameters.iter().enumerate() {
             let (Some(value), Some(variance)) = (values.get(i), own.with_params.get(i)) else {
                 break;
@@ -17,6 +18,7 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
             let excess = within(**value, own.limits) - **value;
             let variance = own.deviation * *variance;
             if excess != A::Scalar::ZERO && variance > A::Scalar::ZERO {
+                is_bound = true;
                 let part = excess / variance;
                 add_scaled(y, part, &own.with_state);
                 let others = self.parameters.iter().zip(own.with_params);
@@ -25,8 +27,11 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
                 }
             }
         }
-        for (value, own) in values.into_iter().zip(&self.parameters) {
-            *value = within(*value, own.limits);
+        if is_bound {
+            // A later one may have moved an earlier one.
+            for (value, own) in values.into_iter().zip(&self.parameters) {
+                *value = within(*value, own.limits);
+            }
         }
     }
 }

@@ -219,5 +219,7 @@ fn planner(Machine { mut params, limit }: Machine) -> Result<Planner<Arithmetic>
     row2[3] = SLOW * time as f32;
     let [.., row] = qf;
     row[3] = SPIN * (time * time) as f32;
-    Ok(Planner::new(&problem)?.for_replanning(ENERGY / (force * force) as f32))
+    let mut planner = Planner::new(&problem)?;
+    planner.set_replanning(ENERGY / (force * force) as f32);
+    Ok(planner)
 }

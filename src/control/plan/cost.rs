@@ -6,7 +6,7 @@ use crate::control::units::Units;
 use crate::error::{Error, Range};
 use crate::math::matrix::{add, add_outer, apply, dot, scale};
 use crate::math::{Real, SinCos};
-use crate::physics::{Modeled, Params, State, directions, plus_scaled, positions, wrap};
+use crate::physics::{Constants, Modeled, Params, State, directions, plus_scaled, positions, wrap};
 
 /// The weights of what a plan costs: the sum of all terms, over all its steps, and of its end. A
 /// larger weight makes its term smaller, at the expense of the others: [a table of what each
@@ -330,15 +330,15 @@ impl<S: Real> Weights<S> {
         if self.by_energy == S::ZERO || machine.set_state(end.into()).is_err() {
             return (S::ZERO, [S::ZERO; 4]);
         }
-        let (sin_cos, constants) = (machine.sin_cos(), machine.model().constants);
+        let sin_cos = machine.sin_cos();
+        let Constants { coupling, gravity1, gravity2, .. } = machine.model().constants;
         let [(sin1, _), (sin2, _)] = sin_cos;
         let [_, (sin_sum, _)] = directions(sin_cos);
-        let [_, _, dtheta1, dtheta2] = end;
-        let fall = constants.gravity2 * sin_sum;
-        let centrifugal = constants.coupling * sin2 * (dtheta1 * (dtheta1 + dtheta2));
-        let [momentum1, momentum2] =
-            machine.mass_matrix().map(|[m1, m2]| m1 * dtheta1 + m2 * dtheta2);
-        let slopes = [constants.gravity1 * sin1 + fall, fall - centrifugal, momentum1, momentum2];
+        let [_, _, v1, v2] = end;
+        let [momentum1, momentum2] = machine.mass_matrix().map(|[m1, m2]| m1 * v1 + m2 * v2);
+        let fall = gravity2 * sin_sum;
+        let by_theta2 = fall - coupling * sin2 * (v1 * (v1 + v2));
+        let slopes = [gravity1 * sin1 + fall, by_theta2, momentum1, momentum2];
         (machine.energy() - self.energy, slopes)
     }
 

@@ -100,14 +100,12 @@ impl<A: Arithmetic> Planner<A> {
         self
     }
 
-    /// The same planner for plans that are made again while the machine moves, and may end on the
-    /// way: with a weight of the energy that is then missing or too much, 1/J². The motor overcomes
-    /// the dry friction of its joint, so derivatives are those without it. With it they are those
-    /// of an elbow that sticks, and wrong as soon as it slips.
-    #[must_use]
-    pub(in crate::control) fn for_replanning(mut self, energy: A::Scalar) -> Self {
+    /// Prepares for plans that are made again while the machine moves, and may end on the way: with
+    /// a weight of the energy that is then missing or too much, 1/J². The motor overcomes the dry
+    /// friction of its joint, so derivatives are those without it. With it they are those of an
+    /// elbow that sticks, and wrong as soon as it slips.
+    pub(in crate::control) fn set_replanning(&mut self, energy: A::Scalar) {
         (self.weights.by_energy, self.weights.replans) = (energy, true);
-        self
     }
 
     /// The regulator of the target, which says from which states it holds.
