@@ -68,6 +68,23 @@ fn a_machine_is_held_with_delay_zeros_and_a_wrong_model() {
     }
 }
 
+/// Frictions at their lower limit, 0, do not make the other parameters wander.
+#[test]
+fn a_machine_without_friction_is_known() {
+    let mut hardware = Hardware::realaigym();
+    let params = hardware.params;
+    hardware.params =
+        Params { damping1: 0.0, damping2: 0.0, coulomb1: 0.0, coulomb2: 0.0, ..params };
+    for seed in 2..6 {
+        let mut rehearsal = rehearsal(hardware, known(&hardware), 20, seed);
+        rehearsal.run(7.0, 0.1, 1.0).unwrap();
+        let found = rehearsal.controller.params();
+        for (found, truth) in [(found.mass1, params.mass1), (found.mass2, params.mass2)] {
+            assert!((f64::from(found) / truth - 1.0).abs() < 0.04, "{seed}: {found} kg");
+        }
+    }
+}
+
 /// An encoder that dies or sticks in motion is found within 0.7 s, from swinging and from upright.
 #[test]
 fn a_broken_encoder_is_an_error() {

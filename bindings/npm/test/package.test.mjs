@@ -68,7 +68,7 @@ async function open(html, play = () => {}) {
   return lines;
 }
 
-test("the package has at most 291 KB and these files", () => {
+test("the package has at most 293 KB and these files", () => {
   const report = run("npm", ["pack", "--json", "--dry-run", join(here, "dist")]);
   const [{ name, files, unpackedSize }] = JSON.parse(report);
   const paths = files.map(({ path }) => path).sort();
@@ -77,14 +77,14 @@ test("the package has at most 291 KB and these files", () => {
   );
   const licences = ["APACHE", "MIT", "tiny-inflate"].map((name) => `LICENSE-${name}`);
   assert.deepEqual(paths, [...licences, "README.md", "package.json", ...entries].sort());
-  assert.ok(unpackedSize <= 291_500, `${unpackedSize} bytes`);
+  assert.ok(unpackedSize <= 293_200, `${unpackedSize} bytes`);
   assert.equal(name, "acrobot-rs");
 });
 
 test("the modules import nothing, and those of acrobots and of control cannot panic", () => {
   for (const [name, most, used] of [
     ["acrobots", 88_300, "acrobot_batch_step"],
-    ["control", 167_500, "acrobot_planner_plan"],
+    ["control", 169_700, "acrobot_planner_plan"],
     ["learner", 23_000, "train"],
   ]) {
     const [text, module] = ["wat", "wasm"].map((type) => join(here, `target/${name}.${type}`));

@@ -17,8 +17,8 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
             };
             let excess = within(**value, own.limits) - **value;
             let variance = own.deviation * *variance;
+            is_bound |= excess != A::Scalar::ZERO;
             if excess != A::Scalar::ZERO && variance > A::Scalar::ZERO {
-                is_bound = true;
                 let part = excess / variance;
                 add_scaled(y, part, &own.with_state);
                 let others = self.parameters.iter().zip(own.with_params);
