@@ -27,19 +27,31 @@ def _checked_counts(counts: Sequence[int]) -> list[int]:
     return [integer("counts", count, -(2**31), 2**31 - 1) for count in counts]
 
 
-def _settings(
-    env: Env, limit: float, counts: Sequence[int], delay: float, plan_timeout: float
-) -> tuple[Any, list[float], list[int]]:
-    timeout = finite("plan_timeout", "a number of s above 0", plan_timeout, largest=np.inf)
-    numbers = [
-        float32("limit", "a finite number of N m above 0", limit),
-        float32("delay", "a finite number of s", delay),
-        min(float(timeout), LARGEST),
-    ]
-    return acrobot_of(env)._native, numbers, _checked_counts(counts)
+class _WithSettings:
+    """What a :class:`Controller` and a :class:`Replanner` are made from."""
+
+    _kind: Any  #: the native class
+
+    def __init__(
+        self,
+        env: Env = None,
+        *,
+        limit: float,
+        counts: Sequence[int],
+        delay: float = 0.0,
+        plan_timeout: float = 1.0,
+    ) -> None:
+        timeout = finite("plan_timeout", "a number of s above 0", plan_timeout, largest=np.inf)
+        numbers = [
+            float32("limit", "a finite number of N m above 0", limit),
+            float32("delay", "a finite number of s", delay),
+            min(float(timeout), LARGEST),
+        ]
+        acrobot = acrobot_of(env)._native
+        self._native = self._kind(acrobot, numbers, _checked_counts(counts))
 
 
-class Controller:
+class Controller(_WithSettings):
     """Takes a machine from encoder counts to torques, with the plans of a :class:`Replanner`.
 
     ``env`` has the parameters, and its ``dt`` is the time from a tick to the next. ``limit`` is the
@@ -51,17 +63,7 @@ class Controller:
     while the machine moves, parameters, the encoders' zeros and the part of the torque that acts.
     """
 
-    def __init__(
-        self,
-        env: Env = None,
-        *,
-        limit: float,
-        counts: Sequence[int],
-        delay: float = 0.0,
-        plan_timeout: float = 1.0,
-    ) -> None:
-        settings = _settings(env, limit, counts, delay, plan_timeout)
-        self._native = _native.Controller(*settings)
+    _kind = _native.Controller
 
     def tick(self, counts: Sequence[int]) -> float:
         """Return the torque until the next tick, N m, from what both encoders count.
@@ -87,24 +89,14 @@ class Controller:
         return Report(*self._native.report())
 
 
-class Replanner:
+class Replanner(_WithSettings):
     """Plans for a :class:`Controller` while the machine moves, with the same arguments.
 
     Call :meth:`exchange` and :meth:`work` again and again, in another thread than ``tick`` or after
     every few ticks.
     """
 
-    def __init__(
-        self,
-        env: Env = None,
-        *,
-        limit: float,
-        counts: Sequence[int],
-        delay: float = 0.0,
-        plan_timeout: float = 1.0,
-    ) -> None:
-        settings = _settings(env, limit, counts, delay, plan_timeout)
-        self._native = _native.Replanner(*settings)
+    _kind = _native.Replanner
 
     def exchange(self, controller: Controller) -> None:
         """Give the controller the plan once it is due, and take its estimates. It is short."""
@@ -113,5 +105,5 @@ class Replanner:
         self._native.exchange(controller._native)
 
     def work(self) -> None:
-        """Plan for some tenths of a millisecond, in which other threads run."""
+        """Plan for one slice, about half a millisecond on a desktop, while other threads run."""
         self._native.work()
