@@ -5,10 +5,12 @@ use rand_core::Rng;
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
-use crate::math::{Real, SinCos};
+use crate::math::{Real, SinCos, Zeros};
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{Params, Pendulum, State, check_torque, default_model};
-use crate::task::{Draws, Gymnasium, Observation, Pose, ResetBounds, ResetOptions, Task, episode};
+use crate::task::{
+    Draws, Gymnasium, Observation, Pose, Remembered, ResetBounds, ResetOptions, Task, episode,
+};
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
@@ -59,10 +61,11 @@ impl<O> Step<O> {
 /// `Params`, `State` and [`Pcg64`] can also be saved alone, without a version. [An
 /// example](crate::guide::embedded_topics#through-a-reset).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Acrobot<A: Arithmetic, T = Gymnasium, R = Pcg64> {
+pub struct Acrobot<A: Arithmetic, T: Task = Gymnasium, R = Pcg64> {
     pendulum: Pendulum<A>,
     rng: R,
     task: T,
+    memory: Remembered<T, A::Scalar>,
 }
 
 impl<A: Arithmetic, T: Task> Acrobot<A, T> {
@@ -125,11 +128,13 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
 
     #[inline]
     fn advance(&mut self, torque: A::Scalar) -> Step<T::Observation> {
-        let noise = self.params().torque_noise;
+        let Self { pendulum, task, memory, .. } = self;
+        let torque = task.act::<A, A::Scalar>(memory, pendulum.params(), torque);
+        let noise = pendulum.params().torque_noise;
         let torque = episode::disturb(torque, noise, core::iter::once(Some(&mut self.rng)));
-        let (model, y, sin_cos) = self.pendulum.parts();
+        let (model, y, sin_cos) = pendulum.parts();
         let (reward, terminated) =
-            episode::step::<A, T, A::Scalar>(model, y, sin_cos, torque, &self.task);
+            episode::step::<A, T, A::Scalar>(model, y, sin_cos, torque, task, memory);
         let sin_cos = *sin_cos;
         Step { observation: self.observe(sin_cos), reward, terminated, truncated: false }
     }
@@ -154,6 +159,8 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
     fn begin(&mut self, bounds: ResetBounds) -> T::Observation {
         let state = self.task.draw(bounds, &mut self.rng).cast();
         let sin_cos = self.pendulum.set_state_unchecked(state);
+        let pose = Pose::new(state, sin_cos);
+        self.task.begin::<A, R>(&mut self.memory, &pose, Some(&mut self.rng));
         self.observe(sin_cos)
     }
 
@@ -166,7 +173,10 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
         let state = T::DEFAULT.draw(T::RESET_BOUNDS, &mut rng).cast();
         // Built field by field: see `Params::default`.
         let params = T::PARAMS.cast();
-        Self::from_pendulum(Pendulum::new_unchecked(params, state), rng)
+        let pendulum = Pendulum::new_unchecked(params, state);
+        let (mut memory, pose) = (Zeros::ZEROS, Pose::new(state, pendulum.sin_cos()));
+        T::DEFAULT.begin::<A, R>(&mut memory, &pose, Some(&mut rng));
+        Self { pendulum, rng, task: T::DEFAULT, memory }
     }
 }
 
@@ -180,8 +190,10 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
 
     #[inline]
     fn observe(&self, sin_cos: [SinCos<A::Scalar>; 2]) -> T::Observation {
-        let pose = Pose { state: self.state(), sin_cos };
-        T::Observation::rounded(self.task.observe::<A, A::Scalar>(&pose))
+        let pose = Pose::new(self.state(), sin_cos).with(&self.memory);
+        let mut observation = T::Observation::ZEROS;
+        observation.write::<_, A::Scalar>(&self.task.observe::<A, _>(&pose), 0);
+        observation
     }
 
     /// The task.
@@ -191,9 +203,28 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
         &self.task
     }
 
-    /// Sets the task for the next steps and resets, such as another point to reach.
+    /// Sets the task for the next steps and resets, such as another point to reach. What it
+    /// remembers stays.
     pub fn set_task(&mut self, task: T) {
         self.task = task;
+    }
+
+    /// What the task remembers.
+    #[must_use]
+    #[inline]
+    pub const fn memory(&self) -> &Remembered<T, A::Scalar> {
+        &self.memory
+    }
+
+    /// Sets what the task remembers.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Task::check_memory`]: [`Error::NotFinite`], and the task's own.
+    pub fn set_memory(&mut self, memory: Remembered<T, A::Scalar>) -> Result<(), Error> {
+        self.task.check_memory(&memory)?;
+        self.memory = memory;
+        Ok(())
     }
 
     /// The state.
@@ -203,9 +234,13 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
         self.pendulum.state()
     }
 
-    /// Sets the state as [`Pendulum::set_state`] does, with its errors.
+    /// Sets the state as [`Pendulum::set_state`] does, with its errors. A task that remembers
+    /// [begins](Task::begin) there, without a draw.
     pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
-        self.pendulum.set_state(state)
+        self.pendulum.set_state(state)?;
+        let pose = Pose::new(state, self.pendulum.sin_cos());
+        self.task.begin::<A, Pcg64>(&mut self.memory, &pose, None);
+        Ok(())
     }
 
     /// The parameters.
@@ -243,7 +278,7 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
     }
 
     /// An acrobot with the default parameters that hangs at rest, also in a
-    /// [`static`](crate::guide::embedded#a-first-program).
+    /// [`static`](crate::guide::embedded#a-first-program). What a task remembers is 0 until a reset.
     #[must_use]
     pub const fn hanging(rng: R) -> Self {
         let model = const { default_model::<A, T>() };
@@ -254,7 +289,7 @@ impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
     /// [in a `const`](crate::guide::embedded_topics).
     #[must_use]
     pub const fn from_pendulum(pendulum: Pendulum<A>, rng: R) -> Self {
-        Self { pendulum, rng, task: T::DEFAULT }
+        Self { pendulum, rng, task: T::DEFAULT, memory: Zeros::ZEROS }
     }
 }
 
@@ -264,6 +299,7 @@ impl<A: Arithmetic, T: Task> Acrobot<A, T> {
     pub const MAX_SNAPSHOT_SIZE: usize = crate::snapshot::Header::<A, T, false>::SIZE
         + (crate::physics::NUMBERS + 4) * size_of::<A::Scalar>() // the parameters and the state
         + 1 // the dynamics
+        + <T::Memory as crate::task::Memory>::LEN * size_of::<A::Scalar>()
         + Pcg64::MAX_SNAPSHOT_SIZE;
 }
 
@@ -282,26 +318,31 @@ mod snapshot {
 
     use super::Acrobot;
     use crate::arithmetic::Arithmetic;
-    use crate::physics::{Pendulum, State};
-    use crate::snapshot::Header;
-    use crate::task::Task;
+    use crate::physics::{Params, Pendulum, State};
+    use crate::snapshot::{Header, numbers};
+    use crate::task::{Remembered, Task};
 
     #[derive(serde::Serialize, serde::Deserialize)]
-    #[serde(rename = "Acrobot")]
-    struct Snapshot<H, P, S, R> {
-        snapshot: H,
-        params: P,
-        state: State<S>,
+    #[serde(rename = "Acrobot", bound(serialize = "T: Serialize, R: Serialize"))]
+    #[serde(bound(deserialize = "T: Deserialize<'de>, R: Deserialize<'de>"))]
+    struct Snapshot<A: Arithmetic, T: Task, R> {
+        snapshot: Header<A, T, false>,
+        params: Params<A::Scalar>,
+        state: State<A::Scalar>,
         rng: R,
+        #[serde(serialize_with = "numbers::serialize::<A::Scalar, T::Memory, _>")]
+        #[serde(deserialize_with = "numbers::deserialize::<A::Scalar, T::Memory, _>")]
+        memory: Remembered<T, A::Scalar>,
     }
 
     impl<A: Arithmetic, T: Task + Serialize, R: Serialize> Serialize for Acrobot<A, T, R> {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
             Snapshot {
-                snapshot: Header::<A, T, false>::of(self.task),
+                snapshot: Header::<A, _, _>::of(self.task),
                 params: *self.params(),
                 state: self.state(),
                 rng: &self.rng,
+                memory: self.memory,
             }
             .serialize(serializer)
         }
@@ -313,10 +354,12 @@ mod snapshot {
     {
         /// Rejects what `set_params` and `set_state` reject.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot { snapshot, params, state, rng } = Snapshot::deserialize(deserializer)?;
-            let Header::<A, T, false> { task, .. } = snapshot;
+            let Snapshot { snapshot, params, state, rng, memory } =
+                Snapshot::<A, T, R>::deserialize(deserializer)?;
+            let task = snapshot.task;
+            task.check_memory(&memory).map_err(D::Error::custom)?;
             let pendulum = Pendulum::new(params, state).map_err(D::Error::custom)?;
-            Ok(Self { pendulum, rng, task })
+            Ok(Self { pendulum, rng, task, memory })
         }
     }
 }

@@ -34,7 +34,7 @@ use core::marker::PhantomData;
 use crate::math::sines::platform;
 use crate::math::sines::{self, correctly_rounded, fdlibm, polynomial, table};
 
-pub use crate::math::{Numbers, Real};
+pub use crate::math::{Numbers, Real, Zeros};
 pub use crate::physics::arithmetic::Arithmetic;
 pub use crate::physics::model::{Form, Modeled};
 

@@ -38,7 +38,7 @@ use crate::error::Error;
 pub use crate::math::SimdLevel;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{State, default_model, model};
-use crate::task::{Gymnasium, ResetBounds, Task};
+use crate::task::{Gymnasium, Memory, ResetBounds, Task};
 use buffers::{check_length, take_mut};
 use inputs::Inputs;
 use lane_params::Own;
@@ -79,7 +79,7 @@ pub struct Batch<A: Arithmetic, S, T = Gymnasium, const N: usize = 16> {
     storage: S,
 }
 
-impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
+impl<A: Arithmetic, S: Storage<A, N, T::Memory>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// A batch with one acrobot for each generator, with the default parameters, in its initial
     /// state. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet spawned.
     ///
@@ -306,12 +306,13 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         state.validate()?;
         let len = self.len();
         let block = self.storage.slices_mut().blocks.get_mut(index / N).filter(|_| index < len);
-        block.ok_or(Error::NoSuchIndex { index, len })?.set_state(index % N, state);
+        let block = block.ok_or(Error::NoSuchIndex { index, len })?;
+        block.begin(index % N, &self.settings.task, state, None);
         Ok(())
     }
 
     /// The block of acrobot `index`, and its generator.
-    fn block_and_rng(&self, index: usize) -> Result<(&Block<A, N>, &Pcg64), Error> {
+    fn block_and_rng(&self, index: usize) -> Result<(&Block<A, N, T::Memory>, &Pcg64), Error> {
         let slices = self.storage.slices();
         let both = slices.blocks.get(index / N).zip(slices.generators.get(index));
         both.ok_or(Error::NoSuchIndex { index, len: self.len() })
@@ -381,11 +382,12 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 }
 
 /// A block with its generators, fewer than `N` in the last block, and its own parameters, if any.
-type Part<'a, A, const N: usize> = (&'a mut Block<A, N>, &'a mut [Pcg64], Option<Own<'a, A, N>>);
+type Part<'a, A, M, const N: usize> =
+    (&'a mut Block<A, N, M>, &'a mut [Pcg64], Option<Own<'a, A, N>>);
 
-fn each_block<A: Arithmetic, const N: usize>(
-    storage: &mut impl Storage<A, N>,
-) -> impl Iterator<Item = Part<'_, A, N>> {
+fn each_block<A: Arithmetic, M: Memory, const N: usize>(
+    storage: &mut impl Storage<A, N, M>,
+) -> impl Iterator<Item = Part<'_, A, M, N>> {
     let slices = storage.slices_mut();
     let (mut generators, mut lane_params) = (slices.generators, slices.lane_params.iter_mut());
     let blocks = slices.blocks.iter_mut();

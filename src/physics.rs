@@ -37,6 +37,7 @@ mod state;
 mod step;
 
 pub(crate) use arithmetic::{check_params, default_model, model};
+pub(crate) use bounds::wrap_each;
 pub use bounds::{saturate, wrap};
 pub(crate) use friction::{coulomb_friction, friction};
 pub(crate) use geometry::{directions, positions};

@@ -1,4 +1,4 @@
-//! The header of a snapshot: type, version, task and arithmetic.
+//! The header of a snapshot: type, version, task and arithmetic. What a task remembers.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -14,7 +14,7 @@ use crate::task::Task;
 const VERSION: u32 = 6;
 
 /// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile.
-const LIMIT: usize = 16;
+pub(crate) const LIMIT: usize = 16;
 
 /// The first field of a snapshot of an acrobot or a batch.
 pub(crate) struct Header<A, T, const BATCH: bool> {
@@ -88,5 +88,63 @@ where
         }
         let text = format_args!("the snapshot must be {rule}, got {found}");
         Err(D::Error::custom(text))
+    }
+}
+
+/// What a task remembers, as a tuple of numbers.
+pub(crate) mod numbers {
+    use core::fmt;
+    use core::marker::PhantomData;
+
+    use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+    use serde::ser::{SerializeTuple, Serializer};
+
+    use crate::math::{Real, Zeros};
+    use crate::task::Memory;
+
+    pub(crate) fn serialize<S: Real, M: Memory, Z: Serializer>(
+        memory: &M::Of<S>,
+        serializer: Z,
+    ) -> Result<Z::Ok, Z::Error> {
+        let mut tuple = serializer.serialize_tuple(M::LEN)?;
+        let mut result = Ok(());
+        M::zip(memory, &mut { *memory }, &mut |x: S, _: &mut S| {
+            if result.is_ok() {
+                result = tuple.serialize_element(&x);
+            }
+        });
+        result?;
+        tuple.end()
+    }
+
+    pub(crate) fn deserialize<'de, S: Real, M: Memory, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<M::Of<S>, D::Error> {
+        struct Tuple<S, M>(PhantomData<(S, M)>);
+
+        impl<'de, S: Real, M: Memory> Visitor<'de> for Tuple<S, M> {
+            type Value = M::Of<S>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "the {} numbers that the task remembers", M::LEN)
+            }
+
+            fn visit_seq<Z: SeqAccess<'de>>(self, mut tuple: Z) -> Result<M::Of<S>, Z::Error> {
+                let mut memory = Zeros::ZEROS;
+                let mut result = Ok(());
+                let mut len = 0;
+                M::zip(&{ memory }, &mut memory, &mut |_: S, to: &mut S| {
+                    if result.is_ok() {
+                        let number = tuple.next_element();
+                        let missing = || Z::Error::invalid_length(len, &self);
+                        result = number.and_then(|x| Ok(*to = x.ok_or_else(missing)?));
+                        len += 1;
+                    }
+                });
+                result.map(|()| memory)
+            }
+        }
+
+        deserializer.deserialize_tuple(M::LEN, Tuple::<S, M>(PhantomData))
     }
 }

@@ -8,6 +8,10 @@ mod balance;
 mod draws;
 pub(crate) mod episode;
 mod gymnasium;
+mod instruments;
+mod measured;
+mod memory;
+mod noise;
 mod observation;
 mod reset_bounds;
 mod reset_options;
@@ -23,12 +27,17 @@ pub use any::AnyTask;
 pub use balance::Balance;
 pub use draws::{Draw, Draws};
 pub use gymnasium::{Gymnasium, GymnasiumV0};
+pub use instruments::Instruments;
+pub use measured::Measured;
+pub use memory::Memory;
+use memory::check_finite;
 pub use observation::Observation;
 pub use reset_bounds::ResetBounds;
 pub use reset_options::ResetOptions;
 pub use swingup::Swingup;
 
 use crate::arithmetic::{Arithmetic, Numbers, Real};
+use crate::error::Error;
 use crate::physics::{Given, Params, State, directions, positions};
 
 /// What an acrobot is to do. Its functions compute for one acrobot or for many side by side, so
@@ -60,6 +69,10 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
 
     /// What an agent sees: `[f32; N]`.
     type Observation: Observation;
+
+    /// What the task remembers of an acrobot between steps, `()` for nothing. [An
+    /// example](crate::guide::tasks#tasks-that-remember).
+    type Memory: Memory;
 
     /// The name of this task. This and the next four follow from the type, unless the value
     /// decides, as in [`AnyTask`].
@@ -93,11 +106,47 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
         bounds.draw(rng)
     }
 
+    /// Begins an episode in this pose: sets the memory, which has the numbers of the episode
+    /// before, or zeros. A reset brings the generator; a state that is set brings none, and then
+    /// what was drawn should stay. Nothing, unless it is replaced.
+    #[inline(always)]
+    fn begin<A: Arithmetic, R: Rng + ?Sized>(
+        &self,
+        _memory: &mut Remembered<Self, A::Scalar>,
+        _pose: &Pose<A::Scalar>,
+        _rng: Option<&mut R>,
+    ) {
+    }
+
+    /// The torque that acts, N m, where the agent chose this one. Torque noise comes after it. The
+    /// same, unless it is replaced.
+    #[inline(always)]
+    fn act<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        _memory: &mut Remembered<Self, V>,
+        _params: &Params<V>,
+        torque: V,
+    ) -> V {
+        torque
+    }
+
+    /// Remembers a step to the new state under a torque, N m, before its observation, end and
+    /// reward. Nothing, unless it is replaced.
+    #[inline(always)]
+    fn remember<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        _memory: &mut Remembered<Self, V>,
+        _pose: &Pose<V>,
+        _params: &Params<V>,
+        _torque: V,
+    ) {
+    }
+
     /// The observation: `[V; N]`, rounded to `f32` afterwards. That of
     /// [`Acrobot-v1`](Gymnasium) is `Gymnasium.observe::<A, V>(pose)`.
     fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        pose: &Pose<V>,
+        pose: &Pose<V, Remembered<Self, V>>,
     ) -> <Self::Observation as Observation>::Of<V>;
 
     /// The largest magnitude of each number of an observation, in its unit: the bounds of the
@@ -110,7 +159,10 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
 
     /// Whether the new state ends the episode: never, unless it is replaced.
     #[inline(always)]
-    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(&self, _: &Pose<V>) -> V::Mask {
+    fn terminated<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        _: &Pose<V, Remembered<Self, V>>,
+    ) -> V::Mask {
         let zero = V::splat(A::Scalar::ZERO);
         zero.simd_gt(zero)
     }
@@ -120,34 +172,63 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
-        _pose: &Pose<V>,
+        _pose: &Pose<V, Remembered<Self, V>>,
         _params: &Params<V>,
         _torque: V,
         terminated: V::Mask,
     ) -> V::Single {
         V::Single::select(terminated, V::Single::splat(0.0), V::Single::splat(-1.0))
     }
+
+    /// Checks what a snapshot or a program makes an acrobot remember. Each number must be finite,
+    /// unless this is replaced.
+    fn check_memory<S: Real>(&self, memory: &Remembered<Self, S>) -> Result<(), Error> {
+        check_finite::<Self::Memory, S>(memory)
+    }
 }
 
+/// What a task remembers of one acrobot or of many: `[V; 3]` if [`Task::Memory`] is `[f32; 3]`.
+pub type Remembered<T, V> = <<T as Task>::Memory as Memory>::Of<V>;
+
 /// Where the links of one acrobot or of many are and how they move: a state, with the sines and
-/// cosines of its angles.
+/// cosines of its angles, and what the task remembers.
 ///
 /// ```
 /// use acrobot::{Params, State, task::Pose};
 ///
-/// let pose = Pose { state: State::UPRIGHT, sin_cos: [(0.0, -1.0), (0.0, 1.0)] };
+/// let pose = Pose::new(State::UPRIGHT, [(0.0, -1.0), (0.0, 1.0)]);
 /// assert_eq!(pose.directions(), [(0.0, -1.0); 2]); // both links point up
 /// assert_eq!(pose.positions(&Params::<f64>::DEFAULT), [[0.0, 1.0], [0.0, 2.0]]); // m
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Pose<V> {
+pub struct Pose<'a, V, M = ()> {
     /// The state.
     pub state: State<V>,
     /// Sine and cosine of θ1, then of θ2.
     pub sin_cos: [(V, V); 2],
+    /// What the task remembers.
+    pub memory: &'a M,
 }
 
-impl<V> Pose<V>
+impl<V> Pose<'_, V> {
+    /// Without a memory.
+    #[must_use]
+    #[inline(always)]
+    pub const fn new(state: State<V>, sin_cos: [(V, V); 2]) -> Self {
+        Self { state, sin_cos, memory: &() }
+    }
+}
+
+impl<V: Copy, M> Pose<'_, V, M> {
+    /// The same pose with another memory: that of a task inside of this one, or `&()`.
+    #[must_use]
+    #[inline(always)]
+    pub const fn with<L>(self, memory: &L) -> Pose<'_, V, L> {
+        Pose { state: self.state, sin_cos: self.sin_cos, memory }
+    }
+}
+
+impl<V, M> Pose<'_, V, M>
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<Output = V> + Neg<Output = V>,
 {

@@ -108,7 +108,7 @@ impl<A: Arithmetic, T: Task, R> TimeLimit<Acrobot<A, T, R>> {
 /// step(&mut TimeLimit::with_task_limit(Acrobot::new(42)));
 /// ```
 // Not for any `E`: the methods of another wrapper would step past the counter.
-impl<A: Arithmetic, T, R> Deref for TimeLimit<Acrobot<A, T, R>> {
+impl<A: Arithmetic, T: Task, R> Deref for TimeLimit<Acrobot<A, T, R>> {
     type Target = Acrobot<A, T, R>;
 
     #[inline]

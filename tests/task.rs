@@ -12,6 +12,7 @@ use acrobot::physics::{Pendulum, saturate};
 use acrobot::rand_core::Rng;
 use acrobot::task::{AnyTask, Balance, Gymnasium, Pose, ResetBounds, Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
+use common::smooth::Smooth;
 use common::twins::Twins;
 use serde::de::DeserializeOwned;
 
@@ -41,6 +42,7 @@ impl Task for Reach {
     const PARAMS: Params = Params { mass2: 1.5, ..Params::DEFAULT };
 
     type Observation = [f32; 5];
+    type Memory = ();
 
     fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
         let drawn = bounds.draw(rng);
@@ -145,6 +147,44 @@ fn a_task_has_data() {
     let (loaded, loaded_batch): Both = postcard::from_bytes(&bytes).unwrap();
     assert_eq!((*loaded.task(), *loaded_batch.task()), (hanging, hanging));
     assert!(postcard::from_bytes::<Acrobot<Fast>>(&bytes).is_err());
+}
+
+#[test]
+fn tasks_that_remember_run_in_batches_with_equal_bits() {
+    Twins::<Fast, 16, Smooth>::at_every_level();
+}
+
+/// The torque that acts is half of the agent's.
+#[test]
+fn a_task_remembers_and_is_saved() {
+    let mut acrobot = Acrobot::<Fast, Smooth>::new(1);
+    let [.., goal] = acrobot.observation();
+    let rewards = [2, 2, -2, 0].map(|torque| acrobot.step_torque(torque as f32).unwrap().reward);
+    assert_eq!(rewards, [-1.0, 0.0, -4.0, -1.0]);
+    let [.., moved] = acrobot.observation();
+    assert!((moved - goal - 0.004).abs() < 1e-6);
+    let (torques, remembered) = *acrobot.memory();
+    assert_eq!((torques, remembered), ([-1.0, 0.0], moved));
+    // The goal is drawn by resets only.
+    acrobot.set_state(State::HANGING).unwrap();
+    assert_eq!(*acrobot.memory(), ([0.0, 0.0], moved));
+    acrobot.reset();
+    assert_ne!(acrobot.memory().1, moved);
+
+    let text = serde_json::to_string(&acrobot).unwrap();
+    assert!(text.contains(r#","memory":[0.0,0.0,"#), "{text}");
+    assert_eq!(serde_json::from_str::<Acrobot<Fast, Smooth>>(&text).unwrap(), acrobot);
+    let error = serde_json::from_str::<Acrobot<Fast, Smooth>>(&text.replace("[0.0,0.0,", "[0.0,"));
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("invalid length 2, expected the 3 numbers that the task"), "{error}");
+    let rejected = acrobot.set_memory(([0.0, f32::NAN], 0.5)).unwrap_err();
+    assert_eq!(rejected.to_string(), "memory must be finite in each element, got NaN");
+
+    let mut batch = VecBatch::<Fast, Smooth>::new(3, 5).unwrap();
+    batch.step(&[2_u8; 5]).unwrap();
+    let bytes = postcard::to_stdvec(&batch).unwrap();
+    let mut loaded: VecBatch<Fast, Smooth> = postcard::from_bytes(&bytes).unwrap();
+    assert_eq!(loaded.step(&[0_u8; 5]).unwrap(), batch.step(&[0_u8; 5]).unwrap());
 }
 
 /// A constant that `AnyTask` does not forward would show here.

@@ -5,10 +5,10 @@ use super::inputs::Inputs;
 use super::lane_params::{LaneParams, Own};
 use super::settings::{Autoreset, Settings};
 use crate::arithmetic::{Arithmetic, Fast};
-use crate::math::{Lanes, Real, SinCos};
+use crate::math::{Lanes, SinCos, Zeros};
 use crate::numpy::Pcg64;
 use crate::physics::{State, sin_cos};
-use crate::task::{Observation, Pose, ResetBounds, Task, episode};
+use crate::task::{Memory, Observation, Pose, ResetBounds, Task, episode};
 
 /// The states of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) has several.
 ///
@@ -22,9 +22,11 @@ use crate::task::{Observation, Pose, ResetBounds, Task, episode};
 /// assert_eq!(size_of_val(&three), 192); // bytes
 /// assert_eq!(size_of::<Block>(), 640); // for up to 16
 /// ```
+///
+/// `M` is what the [task remembers](Task::Memory): a number takes 4 bytes an acrobot.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub struct Block<A: Arithmetic = Fast, const N: usize = 16> {
+pub struct Block<A: Arithmetic = Fast, const N: usize = 16, M: Memory = ()> {
     /// θ1, θ2, θ̇1 and θ̇2.
     y: [Lanes<A::Scalar, N>; 4],
     /// Sines and cosines of θ1 and θ2, for the observation and the next step.
@@ -32,22 +34,23 @@ pub struct Block<A: Arithmetic = Fast, const N: usize = 16> {
     elapsed_steps: [u32; N],
     /// Whether the lane's episode has ended and it waits for a reset.
     done: [bool; N],
+    /// What the task remembers.
+    memory: M::Of<Lanes<A::Scalar, N>>,
 }
 
-impl<A: Arithmetic, const N: usize> Block<A, N> {
-    const ZEROS: Lanes<A::Scalar, N> = Lanes([A::Scalar::ZERO; N]);
-
+impl<A: Arithmetic, const N: usize, M: Memory> Block<A, N, M> {
     /// A block to create a batch with, which resets it.
     pub const EMPTY: Self = Self {
-        y: [Self::ZEROS; 4],
-        sin_cos: [(Self::ZEROS, Self::ZEROS); 2],
+        y: Zeros::ZEROS,
+        sin_cos: Zeros::ZEROS,
         elapsed_steps: [0; N],
         done: [false; N],
+        memory: Zeros::ZEROS,
     };
 }
 
 // Lanes are accessed by iterators or `get`, so no compiler has to prove that an index cannot panic.
-impl<A: Arithmetic, const N: usize> Block<A, N> {
+impl<A: Arithmetic, const N: usize, M: Memory> Block<A, N, M> {
     /// The state of a lane below `N`.
     pub(super) fn state(&self, lane: usize) -> State<A::Scalar> {
         let number = |numbers: &Lanes<_, N>| numbers.0.get(lane).copied().unwrap_or_default();
@@ -77,15 +80,40 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         set(&mut self.done, lane, is_done);
     }
 
-    pub(super) fn begin_episode(&mut self, lane: usize, state: State<A::Scalar>) {
+    /// What the task remembers of a lane below `N`.
+    pub(super) fn memory(&self, lane: usize) -> M::Of<A::Scalar> {
+        let mut memory = Zeros::ZEROS;
+        M::zip(&self.memory, &mut memory, &mut |Lanes(numbers): Lanes<A::Scalar, N>, to| {
+            *to = numbers.get(lane).copied().unwrap_or_default();
+        });
+        memory
+    }
+
+    pub(super) fn set_memory(&mut self, lane: usize, memory: &M::Of<A::Scalar>) {
+        M::zip(memory, &mut self.memory, &mut |number, to: &mut Lanes<A::Scalar, N>| {
+            set(&mut to.0, lane, number);
+        });
+    }
+
+    /// Sets the state of a lane, where the task begins what it remembers. The episode continues.
+    pub(super) fn begin<T: Task<Memory = M>>(
+        &mut self,
+        lane: usize,
+        task: &T,
+        state: State<A::Scalar>,
+        rng: Option<&mut Pcg64>,
+    ) {
         self.set_state(lane, state);
-        self.set_progress(lane, 0, false);
+        let pose = Pose::new(state, sin_cos::<A>([state.theta1, state.theta2]));
+        let mut memory = self.memory(lane);
+        task.begin::<A, _>(&mut memory, &pose, rng);
+        self.set_memory(lane, &memory);
     }
 
     /// Resets the lanes in `mask`, each with its generator, from which it draws own
     /// parameters after the state. A lane without one has no acrobot and hangs at rest.
     #[cold]
-    pub(super) fn reset<T: Task>(
+    pub(super) fn reset<T: Task<Memory = M>>(
         &mut self,
         mask: &[bool; N],
         settings: &Settings<A, T>,
@@ -95,22 +123,21 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     ) {
         let mut generators = generators.iter_mut();
         for (lane, resets) in mask.iter().enumerate() {
-            let rng = generators.next();
+            let mut rng = generators.next();
             if *resets {
-                let state = rng.map_or(State::HANGING, |rng| {
-                    let state = settings.task.draw(bounds, rng).cast();
-                    if let Some((params, draws)) = &mut own {
-                        params.set(lane, draws.draw(&params.get(lane), rng));
-                    }
-                    state
-                });
-                self.begin_episode(lane, state);
+                let draw = |rng| settings.task.draw(bounds, rng).cast();
+                let state = rng.as_deref_mut().map_or(State::HANGING, draw);
+                self.begin(lane, &settings.task, state, rng.as_deref_mut());
+                self.set_progress(lane, 0, false);
+                if let (Some(rng), Some((params, draws))) = (rng, &mut own) {
+                    params.set(lane, draws.draw(&params.get(lane), rng));
+                }
             }
         }
     }
 
     /// With `SameStep` no lane waits: resets those whose episode has ended.
-    pub(super) fn reset_done<T: Task>(
+    pub(super) fn reset_done<T: Task<Memory = M>>(
         &mut self,
         settings: &Settings<A, T>,
         generators: &mut [Pcg64],
@@ -122,57 +149,58 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
+    /// The observations of all lanes.
     #[inline(always)]
-    fn rows<T: Task>(&self, task: &T) -> impl Iterator<Item = T::Observation> {
-        let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
-        let [theta1, theta2, dtheta1, dtheta2] = &self.y;
-        let sines = (sin1.0.iter().zip(&cos1.0)).zip(sin2.0.iter().zip(&cos2.0));
-        let states = (theta1.0.iter().zip(&theta2.0)).zip(dtheta1.0.iter().zip(&dtheta2.0));
-        sines.zip(states).map(|(sines, states)| {
-            let (((sin1, cos1), (sin2, cos2)), ((theta1, theta2), (dtheta1, dtheta2))) =
-                (sines, states);
-            let pose = Pose {
-                state: [*theta1, *theta2, *dtheta1, *dtheta2].into(),
-                sin_cos: [(*sin1, *cos1), (*sin2, *cos2)],
-            };
-            T::Observation::rounded(task.observe::<A, A::Scalar>(&pose))
-        })
+    fn numbers<T: Task<Memory = M>>(&self, task: &T) -> Numbered<A, T, N> {
+        let pose = Pose::new(self.y.into(), self.sin_cos);
+        task.observe::<A, Lanes<_, N>>(&pose.with(&self.memory))
     }
 
     /// Writes the observations, and removes the written elements from `to`.
     #[inline(always)]
-    pub(super) fn observe<T: Task>(&self, task: &T, to: &mut &mut [T::Observation]) {
-        for (to, row) in take_mut(to, N).iter_mut().zip(self.rows(task)) {
-            *to = row;
+    pub(super) fn observe<T: Task<Memory = M>>(&self, task: &T, to: &mut &mut [T::Observation]) {
+        let numbers = self.numbers(task);
+        let to = take_mut(to, N);
+        match <&mut [T::Observation; N]>::try_from(&mut *to) {
+            Ok(to) => write_rows::<A, T, N>(to, &numbers),
+            Err(_) => write_partial_rows::<A, T, N>(to, &numbers),
         }
     }
 
     #[cold]
-    fn observe_masked<T: Task>(&self, task: &T, mask: &[bool; N], to: &mut [T::Observation]) {
-        for ((to, row), mask) in to.iter_mut().zip(self.rows(task)).zip(mask) {
+    fn observe_masked<T: Task<Memory = M>>(
+        &self,
+        task: &T,
+        mask: &[bool; N],
+        to: &mut [T::Observation],
+    ) {
+        let numbers = self.numbers(task);
+        for ((lane, to), mask) in to.iter_mut().enumerate().zip(mask) {
             if *mask {
-                *to = row;
+                to.write::<_, Lanes<A::Scalar, N>>(&numbers, lane);
             }
         }
     }
 
     /// One step of all lanes, without resets.
     #[inline(always)]
-    pub(super) fn advance<T: Task>(
+    pub(super) fn advance<T: Task<Memory = M>>(
         &mut self,
         settings: &Settings<A, T>,
         LaneParams { model }: &LaneParams<A, N>,
         inputs: Inputs<'_, A::Scalar>,
         generators: &mut [Pcg64],
     ) -> Results<N> {
+        let (task, memory) = (&settings.task, &mut self.memory);
         let torques = inputs.torques(&model.params.torques);
+        let torques = task.act::<A, Lanes<_, N>>(memory, &model.params, torques);
         let resets = settings.autoreset == Autoreset::NextStep;
         let generators = generators.iter_mut().zip(&self.done);
         let generators = generators.map(|(rng, done)| (!(resets & done)).then_some(rng));
         let torques = episode::disturb(torques, model.params.torque_noise, generators);
         let (y, sin_cos) = (&mut self.y, &mut self.sin_cos);
         let (Lanes(rewards), terminated) =
-            episode::step::<A, T, Lanes<_, N>>(model, y, sin_cos, torques, &settings.task);
+            episode::step::<A, T, Lanes<_, N>>(model, y, sin_cos, torques, task, memory);
         let (mut truncated, mut done) = ([false; N], [false; N]);
         let results = truncated.iter_mut().zip(&mut done);
         for ((elapsed_steps, terminated), (truncated, done)) in
@@ -195,7 +223,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     /// Resets lanes whose episodes ended, writes the results, and removes the written elements from
     /// `buffers`.
     #[inline(always)]
-    pub(super) fn finish<T: Task>(
+    pub(super) fn finish<T: Task<Memory = M>>(
         &mut self,
         settings: &Settings<A, T>,
         mut results: Results<N>,
@@ -221,6 +249,30 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
             self.observe(&settings.task, rows);
         }
     }
+}
+
+/// The observations of `N` lanes.
+type Numbered<A, T, const N: usize> =
+    <<T as Task>::Observation as Observation>::Of<Lanes<<A as Arithmetic>::Scalar, N>>;
+
+#[inline(always)]
+fn write_rows<A: Arithmetic, T: Task, const N: usize>(
+    to: &mut [T::Observation],
+    numbers: &Numbered<A, T, N>,
+) {
+    for (lane, to) in to.iter_mut().enumerate().take(N) {
+        to.write::<_, Lanes<A::Scalar, N>>(numbers, lane);
+    }
+}
+
+/// Those of the last block. Out of line: a constant number of rows takes less time.
+#[cold]
+#[inline(never)]
+fn write_partial_rows<A: Arithmetic, T: Task, const N: usize>(
+    to: &mut [T::Observation],
+    numbers: &Numbered<A, T, N>,
+) {
+    write_rows::<A, T, N>(to, numbers);
 }
 
 pub(super) struct Results<const N: usize> {

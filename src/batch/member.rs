@@ -7,7 +7,9 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::Pcg64;
 use crate::physics::{Params, State};
-use crate::task::Task;
+#[cfg(feature = "serde")]
+use crate::snapshot::numbers;
+use crate::task::{Memory, Task};
 
 /// One acrobot of a batch, as plain data. Unlike a [whole batch](Batch#snapshots), it is stored
 /// without a version. Others can continue from it by [`set_member`](Batch::set_member).
@@ -26,7 +28,7 @@ use crate::task::Task;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
-pub struct Member<A: Arithmetic> {
+pub struct Member<A: Arithmetic, M: Memory = ()> {
     /// The parameters.
     pub params: Params<A::Scalar>,
     /// The state.
@@ -37,16 +39,24 @@ pub struct Member<A: Arithmetic> {
     pub is_done: bool,
     /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,
+    /// What the [task remembers](Task::Memory).
+    #[cfg_attr(feature = "serde", serde(serialize_with = "numbers::serialize::<A::Scalar, M, _>"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "numbers::deserialize::<A::Scalar, M, _>")
+    )]
+    pub memory: M::Of<A::Scalar>,
 }
 
-impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
+impl<A: Arithmetic, S: Storage<A, N, T::Memory>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// Acrobot `index`, or [`Error::NoSuchIndex`].
     #[inline(never)] // saves flash: each call would copy the fields
-    pub fn member(&self, index: usize) -> Result<Member<A>, Error> {
+    pub fn member(&self, index: usize) -> Result<Member<A, T::Memory>, Error> {
         let (block, rng) = self.block_and_rng(index)?;
         let (elapsed_steps, is_done) = block.progress(index % N);
         let (params, state) = (self.params(index)?, block.state(index % N));
-        Ok(Member { params, state, elapsed_steps, is_done, rng: rng.clone() })
+        let (rng, memory) = (rng.clone(), block.memory(index % N));
+        Ok(Member { params, state, elapsed_steps, is_done, rng, memory })
     }
 
     /// Replaces acrobot `index` by `member`. [`Autoreset::SameStep`](super::Autoreset) resets
@@ -54,10 +64,11 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     ///
     /// # Errors
     ///
-    /// Those of [`set_state`](Self::set_state) and of [`set_params`](Self::set_params), which fails
+    /// Those of [`set_state`](Self::set_state), of [`set_memory`](Self::set_memory) and of [`set_params`](Self::set_params), which fails
     /// with [`Error::SharedParams`] only for other parameters than those that all acrobots share.
-    pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
+    pub fn set_member(&mut self, index: usize, member: Member<A, T::Memory>) -> Result<(), Error> {
         member.state.validate()?;
+        self.settings.task.check_memory(&member.memory)?;
         match &self.settings.shared {
             Some(model) if model.params == member.params => _ = self.block_and_rng(index)?,
             _ => self.set_params(index, member.params)?,
@@ -68,6 +79,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         if let (Some(block), Some(rng)) = (blocks.get_mut(index / N), generators.get_mut(index % N))
         {
             block.set_state(index % N, member.state);
+            block.set_memory(index % N, &member.memory);
             block.set_progress(index % N, member.elapsed_steps, member.is_done);
             *rng = member.rng;
             let own = lane_params.get_mut(index / N).zip(draws.as_deref());

@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::physics::{Params, check_params, model};
 use crate::task::{Draws, Task};
 
-impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
+impl<A: Arithmetic, S: Storage<A, N, T::Memory>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// The parameters of acrobot `index`, or [`Error::NoSuchIndex`].
     pub fn params(&self, index: usize) -> Result<Params<A::Scalar>, Error> {
         self.block_and_rng(index)?;

@@ -9,7 +9,7 @@ use crate::numpy::SeedSequence;
 use crate::physics::State;
 use crate::task::{ResetOptions, Task};
 
-impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
+impl<A: Arithmetic, S: Storage<A, N, T::Memory>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// Resets all acrobots, each with the next draws of its stream.
     ///
     /// ```
@@ -116,7 +116,8 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         let mut states = states.iter();
         for block in self.storage.slices_mut().blocks {
             for (lane, state) in states.by_ref().take(N).enumerate() {
-                block.begin_episode(lane, *state);
+                block.begin(lane, &self.settings.task, *state, None);
+                block.set_progress(lane, 0, false);
             }
         }
         Ok(())

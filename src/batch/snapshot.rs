@@ -38,8 +38,9 @@ struct Settings<A: Arithmetic, T: Task> {
     draws: Params<Draw<A::Scalar>>,
 }
 
-impl<A: Arithmetic, S: Storage<A, N>, T, const N: usize> Serialize for Batch<A, S, T, N>
+impl<A: Arithmetic, S, T, const N: usize> Serialize for Batch<A, S, T, N>
 where
+    S: Storage<A, N, T::Memory>,
     T: Task + Serialize,
 {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
@@ -60,7 +61,7 @@ where
     }
 }
 
-impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
+impl<A: Arithmetic, S: Storage<A, N, T::Memory>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// Loads a [snapshot](Self#snapshots) of a batch into memory for as many acrobots, for example
     /// with `&mut postcard::Deserializer::from_bytes(&bytes)`.
     ///
@@ -99,7 +100,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     }
 
     /// Replaces a member. The first brings the parameters that all acrobots share.
-    fn load(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
+    fn load(&mut self, index: usize, member: Member<A, T::Memory>) -> Result<(), Error> {
         if index >= self.len() {
             return check_length("members", index + 1, self.len());
         }
@@ -160,14 +161,14 @@ where
 /// Reads a snapshot: calls `each` with the members in their order, and returns the settings.
 fn read<'de, A: Arithmetic, T: Task + Deserialize<'de>, D: Deserializer<'de>>(
     deserializer: D,
-    each: impl FnMut(Member<A>) -> Result<(), Error>,
+    each: impl FnMut(Member<A, T::Memory>) -> Result<(), Error>,
 ) -> Result<Settings<A, T>, D::Error> {
     struct Records<A, T, F>(F, PhantomData<(A, T)>);
 
     impl<'de, A: Arithmetic, T, F> Visitor<'de> for Records<A, T, F>
     where
         T: Task + Deserialize<'de>,
-        F: FnMut(Member<A>) -> Result<(), Error>,
+        F: FnMut(Member<A, T::Memory>) -> Result<(), Error>,
     {
         type Value = Settings<A, T>;
 

@@ -4,7 +4,7 @@ use super::block::Block;
 use super::lane_params::LaneParams;
 use crate::arithmetic::{Arithmetic, Real};
 use crate::numpy::Pcg64;
-use crate::task::Draws;
+use crate::task::{Draws, Memory};
 
 /// The memory of a [`Batch`](super::Batch): arrays, slices or `Vec`s, whose lengths must never
 /// change. For 50 acrobots, 16 in a block:
@@ -72,20 +72,20 @@ impl<P, S: Real> OwnParams<P, S> {
 /// assert!(speed(&batch)? <= 0.1);
 /// # Ok::<(), Error>(())
 /// ```
-pub trait Storage<A: Arithmetic, const N: usize> {
+pub trait Storage<A: Arithmetic, const N: usize, M: Memory = ()> {
     #[doc(hidden)]
-    fn slices(&self) -> Slices<'_, A, N>;
+    fn slices(&self) -> Slices<'_, A, N, M>;
 
     #[doc(hidden)]
-    fn slices_mut(&mut self) -> SlicesMut<'_, A, N>;
+    fn slices_mut(&mut self) -> SlicesMut<'_, A, N, M>;
 }
 
 /// The blocks, one for each `N` acrobots, the generators, one for each acrobot, and the parameters:
 /// one [`LaneParams`] for each block, or none where acrobots share them, and what resets draw. No
 /// path outside of the crate names it, which seals [`Storage`].
 #[derive(Debug)]
-pub struct Slices<'a, A: Arithmetic, const N: usize> {
-    pub blocks: &'a [Block<A, N>],
+pub struct Slices<'a, A: Arithmetic, const N: usize, M: Memory> {
+    pub blocks: &'a [Block<A, N, M>],
     pub generators: &'a [Pcg64],
     pub lane_params: &'a [LaneParams<A, N>],
     pub draws: Option<&'a Draws<A::Scalar>>,
@@ -93,20 +93,21 @@ pub struct Slices<'a, A: Arithmetic, const N: usize> {
 
 /// The same slices, to change their elements.
 #[derive(Debug)]
-pub struct SlicesMut<'a, A: Arithmetic, const N: usize> {
-    pub blocks: &'a mut [Block<A, N>],
+pub struct SlicesMut<'a, A: Arithmetic, const N: usize, M: Memory> {
+    pub blocks: &'a mut [Block<A, N, M>],
     pub generators: &'a mut [Pcg64],
     pub lane_params: &'a mut [LaneParams<A, N>],
     pub draws: Option<&'a mut Draws<A::Scalar>>,
 }
 
-impl<A, B, G, const N: usize> Storage<A, N> for BatchMemory<B, G>
+impl<A, B, G, M, const N: usize> Storage<A, N, M> for BatchMemory<B, G>
 where
     A: Arithmetic,
-    B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
+    M: Memory,
+    B: AsRef<[Block<A, N, M>]> + AsMut<[Block<A, N, M>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
 {
-    fn slices(&self) -> Slices<'_, A, N> {
+    fn slices(&self) -> Slices<'_, A, N, M> {
         Slices {
             blocks: self.blocks.as_ref(),
             generators: self.generators.as_ref(),
@@ -115,7 +116,7 @@ where
         }
     }
 
-    fn slices_mut(&mut self) -> SlicesMut<'_, A, N> {
+    fn slices_mut(&mut self) -> SlicesMut<'_, A, N, M> {
         SlicesMut {
             blocks: self.blocks.as_mut(),
             generators: self.generators.as_mut(),
@@ -125,14 +126,15 @@ where
     }
 }
 
-impl<A, B, G, P, const N: usize> Storage<A, N> for BatchMemory<B, G, OwnParams<P, A::Scalar>>
+impl<A, B, G, P, M, const N: usize> Storage<A, N, M> for BatchMemory<B, G, OwnParams<P, A::Scalar>>
 where
     A: Arithmetic,
-    B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
+    M: Memory,
+    B: AsRef<[Block<A, N, M>]> + AsMut<[Block<A, N, M>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
     P: AsRef<[LaneParams<A, N>]> + AsMut<[LaneParams<A, N>]>,
 {
-    fn slices(&self) -> Slices<'_, A, N> {
+    fn slices(&self) -> Slices<'_, A, N, M> {
         Slices {
             blocks: self.blocks.as_ref(),
             generators: self.generators.as_ref(),
@@ -141,7 +143,7 @@ where
         }
     }
 
-    fn slices_mut(&mut self) -> SlicesMut<'_, A, N> {
+    fn slices_mut(&mut self) -> SlicesMut<'_, A, N, M> {
         SlicesMut {
             blocks: self.blocks.as_mut(),
             generators: self.generators.as_mut(),

@@ -16,9 +16,10 @@ use crate::task::{Gymnasium, Observation, Task};
 
 type Own<A, const N: usize> = OwnParams<Vec<LaneParams<A, N>>, <A as Arithmetic>::Scalar>;
 
-type Memory<A, const N: usize> = BatchMemory<Vec<Block<A, N>>, Vec<Pcg64>, Own<A, N>>;
+type InVec<A, T, const N: usize> =
+    BatchMemory<Vec<Block<A, N, <T as Task>::Memory>>, Vec<Pcg64>, Own<A, N>>;
 
-type InVecs<A, T, const N: usize> = Batch<A, Memory<A, N>, T, N>;
+type InVecs<A, T, const N: usize> = Batch<A, InVec<A, T, N>, T, N>;
 
 /// A [`Batch`] in `Vec`s, with all its methods, whose steps return their results.
 ///
@@ -82,7 +83,7 @@ impl<O: Observation> StepResults<O> {
     }
 }
 
-fn memory<A: Arithmetic, const N: usize>(len: usize) -> Result<Memory<A, N>, Error> {
+fn memory<A: Arithmetic, T: Task, const N: usize>(len: usize) -> Result<InVec<A, T, N>, Error> {
     let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
     let generators = fill(Pcg64::UNSEEDED, len, len)?;
     Ok(BatchMemory { blocks, generators, own: OwnParams::new(Vec::new()) })
@@ -95,12 +96,15 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     ///
     /// [`Error::EmptyBatch`] for a `len` of 0, and [`Error::OutOfMemory`].
     pub fn new(seed: impl Into<SeedSequence>, len: usize) -> Result<Self, Error> {
-        Ok(Self { batch: Batch::new(seed, memory(len)?)?, results: StepResults::new(len)? })
+        Ok(Self {
+            batch: Batch::new(seed, memory::<A, T, N>(len)?)?,
+            results: StepResults::new(len)?,
+        })
     }
 
     /// As [`new`](Self::new), for this task: see [`Batch::with_task`].
     pub fn with_task(seed: impl Into<SeedSequence>, task: T, len: usize) -> Result<Self, Error> {
-        let batch = Batch::with_task(seed, task, memory(len)?)?;
+        let batch = Batch::with_task(seed, task, memory::<A, T, N>(len)?)?;
         Ok(Self { batch, results: StepResults::new(len)? })
     }
 

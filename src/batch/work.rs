@@ -17,7 +17,7 @@ use crate::task::{Draws, Task};
 /// What a step reads and writes.
 pub(super) struct Work<'a, A: Arithmetic, T: Task, const N: usize> {
     pub(super) settings: &'a Settings<A, T>,
-    pub(super) blocks: &'a mut [Block<A, N>],
+    pub(super) blocks: &'a mut [Block<A, N, T::Memory>],
     pub(super) generators: &'a mut [Pcg64],
     /// Empty where acrobots share their parameters.
     pub(super) lane_params: &'a mut [LaneParams<A, N>],

@@ -1,17 +1,14 @@
 //! One number, or `N` side by side for batches.
 
-use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::real::Real;
+use super::zeros::Zeros;
 
 /// One number, or many side by side: the crate implements it for `f32`, for `f64` and for their
 /// lanes in a batch.
 pub trait Numbers<S: Real>:
-    Copy
-    + fmt::Debug
-    + Send
-    + Sync
+    Zeros
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -142,8 +139,12 @@ impl<S: Real> Numbers<S> for S {
 
 /// `N` numbers: a plain array and loops over it, which LLVM compiles to the SIMD instructions of
 /// the target.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<S, const N: usize>(pub(crate) [S; N]);
+
+impl<S: Real, const N: usize> Zeros for Lanes<S, N> {
+    const ZEROS: Self = Self([S::ZERO; N]);
+}
 
 macro_rules! lane_by_lane {
     ($($trait:ident $method:ident),*) => {$(

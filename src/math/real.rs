@@ -3,6 +3,7 @@
 use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::zeros::Zeros;
 use sealed::Sealed as _;
 
 /// A scalar: `f32` or `f64`.
@@ -10,14 +11,10 @@ use sealed::Sealed as _;
 /// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so results are
 /// the same on every machine.
 pub trait Real:
-    Copy
-    + fmt::Debug
+    Zeros
     + fmt::Display
     + Default
     + PartialOrd
-    + Send
-    + Sync
-    + 'static
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -86,6 +83,10 @@ macro_rules! impl_real {
                 let biased = self + (Self::MAGIC + ($scalar::MAX_EXP - 1) as $scalar);
                 $scalar::from_bits(biased.to_bits() << DIGITS)
             }
+        }
+
+        impl Zeros for $scalar {
+            const ZEROS: Self = 0.0;
         }
 
         impl Real for $scalar {

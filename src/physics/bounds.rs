@@ -18,7 +18,7 @@ pub fn wrap<S: Real>(x: S) -> S {
 
 /// As [`wrap`], of one angle or of many.
 #[inline(always)]
-pub(super) fn wrap_each<S: Real, V: Numbers<S>>(x: V) -> V {
+pub(crate) fn wrap_each<S: Real, V: Numbers<S>>(x: V) -> V {
     let turns = x * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
     let turned = x - turns.map(S::round_small) * V::splat(S::TAU);
     // The bound is for angles whose neighbours are more than a turn away. An angle within ±π does

@@ -89,6 +89,7 @@ impl Task for AnyTask {
     const PARAMS: Params = Gymnasium::PARAMS;
 
     type Observation = [f32; 6];
+    type Memory = ();
 
     fn name(&self) -> &'static str {
         with_task!(self, task => task.name())

@@ -47,6 +47,7 @@ impl Task for Balance {
 
     /// That of [`Gymnasium`].
     type Observation = [f32; 6];
+    type Memory = ();
 
     #[inline]
     fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {

@@ -54,8 +54,14 @@ pub enum Draw<S = f64> {
 }
 
 impl<S: Real> Draw<S> {
+    /// A constant.
+    #[must_use]
+    pub const fn exactly(number: S) -> Self {
+        Self::Uniform { low: number, high: number }
+    }
+
     /// The bounds; of one that does not draw, its number.
-    fn bounds(self, number: S) -> [S; 2] {
+    pub(super) fn bounds(self, number: S) -> [S; 2] {
         match self {
             Self::Fixed => [number; 2],
             Self::Uniform { low, high }
@@ -64,7 +70,7 @@ impl<S: Real> Draw<S> {
         }
     }
 
-    fn check(self, name: &'static str, unit: &'static str) -> Result<(), Error> {
+    pub(super) fn check(self, name: &'static str, unit: &'static str) -> Result<(), Error> {
         let [low, high] = self.bounds(S::ZERO).map(S::to_f64);
         let out_of_range = |value, rule| Err(Error::OutOfRange { name, value, unit, rule });
         let is_ordered = low <= high; // false for NaN
@@ -87,7 +93,7 @@ impl<S: Real> Draw<S> {
     }
 
     /// A number between the bounds, with the same bits on all machines.
-    fn draw<R: Rng + ?Sized>(self, number: S, rng: &mut R) -> S {
+    pub(super) fn draw<R: Rng + ?Sized>(self, number: S, rng: &mut R) -> S {
         let [low, high] = self.bounds(number);
         if low == high {
             return low;

@@ -4,7 +4,7 @@ use core::num::NonZeroU32;
 
 use rand_core::Rng;
 
-use super::{Pose, Task};
+use super::{Pose, Remembered, Task};
 use crate::arithmetic::{Arithmetic, Numbers, Real};
 use crate::math::SinCos;
 use crate::numpy::uniform;
@@ -21,9 +21,12 @@ pub(crate) fn step<A: Arithmetic, T: Task, V: Numbers<A::Scalar>>(
     sin_cos: &mut [SinCos<V>; 2],
     torque: V,
     task: &T,
+    memory: &mut Remembered<T, V>,
 ) -> Outcome<A::Scalar, V> {
     advance::<A, V>(model, y, sin_cos, torque);
-    let pose = Pose { state: (*y).into(), sin_cos: *sin_cos };
+    let pose = Pose::new((*y).into(), *sin_cos);
+    task.remember::<A, V>(memory, &pose, &model.params, torque);
+    let pose = pose.with(&*memory);
     let terminated = task.terminated::<A, V>(&pose);
     (task.reward::<A, V>(&pose, &model.params, torque, terminated), terminated)
 }

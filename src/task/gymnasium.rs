@@ -40,6 +40,7 @@ impl Task for Gymnasium {
     /// \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\], velocities in rad/s: hanging at rest \[1, 0,
     /// 1, 0, 0, 0\].
     type Observation = [f32; 6];
+    type Memory = ();
 
     #[inline(always)]
     fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 6] {
@@ -109,6 +110,7 @@ impl Task for GymnasiumV0 {
 
     /// \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s.
     type Observation = [f32; 4];
+    type Memory = ();
 
     #[inline(always)]
     fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, pose: &Pose<V>) -> [V; 4] {

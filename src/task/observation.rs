@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::math::Real;
+use crate::math::{Numbers, Real};
 
 /// `[f32; N]`: the numbers that an agent sees.
 ///
@@ -23,9 +23,9 @@ pub trait Observation:
     #[doc(hidden)]
     const ZEROS: Self;
 
-    /// Each number rounded to `f32`.
+    /// The numbers of a lane below `V::LEN`, each rounded to `f32`.
     #[doc(hidden)]
-    fn rounded<S: Real>(numbers: Self::Of<S>) -> Self;
+    fn write<S: Real, V: Numbers<S>>(&mut self, numbers: &Self::Of<V>, lane: usize);
 }
 
 impl<const N: usize> Observation for [f32; N] {
@@ -34,8 +34,10 @@ impl<const N: usize> Observation for [f32; N] {
     const ZEROS: Self = [0.0; N];
 
     #[inline(always)]
-    fn rounded<S: Real>(numbers: [S; N]) -> Self {
-        numbers.map(|x| x.to_f64() as f32)
+    fn write<S: Real, V: Numbers<S>>(&mut self, numbers: &[V; N], lane: usize) {
+        for (to, x) in self.iter_mut().zip(numbers) {
+            *to = x.lane(lane).to_f64() as f32;
+        }
     }
 }
 

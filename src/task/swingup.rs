@@ -50,6 +50,7 @@ impl Task for Swingup {
     /// The sines of both links' angles from upright, their cosines, θ̇1 and θ̇2, rad/s: hanging at
     /// rest \[0, 0, −1, −1, 0, 0\].
     type Observation = [f32; 6];
+    type Memory = ();
 
     /// At rest: it draws the angles only.
     #[inline]

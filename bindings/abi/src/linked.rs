@@ -79,6 +79,7 @@ impl Task for Linked {
     const MAX_STEPS: NonZeroU32 = AnyTask::MAX_STEPS;
 
     type Observation = [f32; 6];
+    type Memory = ();
 
     fn name(&self) -> &'static str {
         self.task().name()

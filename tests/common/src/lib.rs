@@ -3,6 +3,7 @@
 pub mod canvas;
 mod recording;
 mod repeating;
+pub mod smooth;
 pub mod twins;
 
 use std::fs;

@@ -140,6 +140,7 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
                 elapsed_steps: alone.elapsed_steps(),
                 is_done: self.done[i],
                 rng: inner.rng().clone(),
+                memory: *inner.memory(),
             };
             let member = batch.member(i).unwrap();
             assert_eq!(member, expected, "acrobot {i}");

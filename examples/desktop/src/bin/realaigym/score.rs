@@ -44,7 +44,7 @@ pub fn costs(params: Params, rows: &[Row]) -> anyhow::Result<Costs> {
     for (i, pair) in rows.windows(2).enumerate() {
         let ((state, torques), (next, _)) = (pair[0], pair[1]);
         let pendulum = Pendulum::<Portable>::new(params, next.into())?;
-        let pose = Pose { state: pendulum.state(), sin_cos: pendulum.sin_cos() };
+        let pose = Pose::new(pendulum.state(), pendulum.sin_cos());
         if RealAiGym.reward::<Portable, f64>(&pose, &params, 0.0, false) > 0.0 {
             costs[7] += dt;
             costs[0] = costs[0].min((i + 1) as f64 * dt);

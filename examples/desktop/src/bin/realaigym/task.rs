@@ -59,6 +59,7 @@ impl Task for RealAiGym {
 
     /// θ1, θ2, θ̇1, θ̇2.
     type Observation = [f32; 4];
+    type Memory = ();
 
     /// At rest.
     fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
