@@ -13,9 +13,11 @@ use std::process::Command;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Reference};
 use acrobot::batch::SimdLevel::{self, Avx2, Baseline};
+use acrobot::batch::VecBatch;
 use acrobot::numpy::Pcg64;
+use acrobot::task::Task;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
-use benches::Play;
+use benches::{Play, measured};
 
 /// About two episodes of a random policy, with their resets.
 const STEPS: usize = 1000;
@@ -29,10 +31,12 @@ const COUNTS: &[(&str, f64, fn())] = &[
     ("Micro", 491.0, alone::<Micro>),
     ("batch of Fast", 246.0, || batch::<Fast>(Baseline, false)),
     ("batch of Fast, AVX2", 111.0, || batch::<Fast>(Avx2, false)),
-    ("batch of Fast, observed", 263.0, || batch::<Fast>(Baseline, true)),
-    ("batch of Fast, observed, AVX2", 121.0, || batch::<Fast>(Avx2, true)),
+    ("batch of Fast, observed", 260.0, || batch::<Fast>(Baseline, true)),
+    ("batch of Fast, observed, AVX2", 123.0, || batch::<Fast>(Avx2, true)),
     ("batch of Portable", 816.0, || batch::<Portable>(Baseline, false)),
     ("batch of Portable, AVX2", 345.0, || batch::<Portable>(Avx2, false)),
+    ("batch of Fast, measured", 463.0, || measure(Baseline)),
+    ("batch of Fast, measured, AVX2", 204.0, || measure(Avx2)),
     // It compiles as long as the others together, so CI counts it at night.
     #[cfg(feature = "long")]
     ("batch of Reference, AVX2", 676.0, || batch::<Reference>(Avx2, false)),
@@ -58,8 +62,16 @@ fn alone<A: Arithmetic>() {
 }
 
 fn batch<A: Arithmetic>(level: SimdLevel, observe: bool) {
+    play(Play::<A>::new(ACROBOTS), level, observe);
+}
+
+fn measure(level: SimdLevel) {
+    let batch = VecBatch::<Fast, _>::with_task(0, measured(), ACROBOTS);
+    play(Play::from(batch.expect("memory for the batch")), level, true);
+}
+
+fn play<A: Arithmetic, T: Task>(mut play: Play<A, T>, level: SimdLevel, observe: bool) {
     assert!(level.is_available(), "this machine has no {level:?}");
-    let mut play = Play::<A>::new(ACROBOTS);
     play.batch.set_simd_level(level);
     counted(&mut || {
         for _ in 0..STEPS {

@@ -19,7 +19,7 @@ use acrobot::batch::{SimdLevel, VecBatch};
 use acrobot::numpy::Pcg64;
 use acrobot::task::{Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
-use benches::{Lanes, Play, bare_f32, bare_f64};
+use benches::{Lanes, Play, bare_f32, bare_f64, measured};
 
 fn main() {
     scalar::<Host>("scalar_host", bare_f64);
@@ -35,6 +35,14 @@ fn main() {
     versus("batch_fast_1024_own_params", Play::from(own), Play::<Fast>::new(1024));
     let swingup = Play::<Damped<Fast>, Swingup>::new(1024);
     versus("batch_fast_1024_swingup", swingup, Play::<Fast>::new(1024));
+    for level in [SimdLevel::widest(), SimdLevel::Avx2, SimdLevel::Baseline] {
+        let measured = VecBatch::<Fast, _>::with_task(0, measured(), 1024);
+        let mut measured = Play::from(measured.expect("memory for the batch"));
+        let mut plain = Play::<Fast>::new(1024);
+        measured.batch.set_simd_level(level);
+        plain.batch.set_simd_level(level);
+        versus(&format!("batch_fast_1024_measured {level:?}"), measured, plain);
+    }
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
     batch::<Portable>("portable", 1024, SimdLevel::widest());

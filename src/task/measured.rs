@@ -95,17 +95,22 @@ impl<T: Task, const DELAY: usize> Measured<T, DELAY> {
         if self.instruments.encoder_zero1.is_some() || self.instruments.encoder_zero2.is_some() {
             angles = [angles[0] + zero1, angles[1] + zero2];
         }
+        // Loops, because LLVM keeps `array::map` out of line.
         if self.instruments.angle_noise.is_some() {
-            angles = angles.map(|angle| angle + deviation * noise::normal::<S, V>(noise));
+            for angle in &mut angles {
+                *angle = *angle + deviation * noise::normal::<S, V>(noise);
+            }
         }
         if self.instruments.encoder_counts.is_some() {
             let of_a_radian = counts * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
-            angles = angles.map(|angle| {
-                let counted = (angle * of_a_radian).map(S::round_small) / of_a_radian;
-                counts.select_abs_le(S::ZERO, angle, counted)
-            });
+            let resolution = V::splat(S::from_f64(1.0)) / of_a_radian;
+            for angle in &mut angles {
+                let counted = (*angle * of_a_radian).map(S::round_small) * resolution;
+                *angle = counts.select_abs_le(S::ZERO, *angle, counted);
+            }
         }
-        let [theta1, theta2] = angles.map(wrap_each::<S, V>);
+        let [theta1, theta2] = angles;
+        let [theta1, theta2] = [wrap_each::<S, V>(theta1), wrap_each::<S, V>(theta2)];
         [theta1, theta2, state.dtheta1, state.dtheta2]
     }
 }
@@ -193,12 +198,13 @@ impl<T: Task, const DELAY: usize> Task for Measured<T, DELAY> {
         }
         *newest = self.read(drawn, noise, pose.state);
         if self.instruments.velocity_filter.is_some() {
+            let rate = V::splat(A::Scalar::from_f64(1.0)) / params.dt;
             let [theta1, theta2, dtheta1, dtheta2] = newest;
             let [before1, before2, slow1, slow2] = before;
             for (dtheta, turned, slow) in
                 [(dtheta1, *theta1 - before1, slow1), (dtheta2, *theta2 - before2, slow2)]
             {
-                let difference = wrap_each::<A::Scalar, V>(turned) / params.dt;
+                let difference = wrap_each::<A::Scalar, V>(turned) * rate;
                 *dtheta = approach(slow, difference, filter, params.dt);
             }
         }
