@@ -5,7 +5,7 @@ use acrobot::batch::{
     Autoreset, Batch, BatchMemory, Block, LaneParams, OwnParams, StepBuffers, Storage,
 };
 use acrobot::numpy::Pcg64;
-use acrobot::task::{Draw, Draws, Gymnasium, Task};
+use acrobot::task::{Draw, Draws, Gymnasium, Instruments, Measured, Task};
 use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
 
 use crate::{Digest, against};
@@ -109,13 +109,14 @@ fn steps<A: Arithmetic>(mut acrobot: Acrobot<A>, change: impl Fn(&mut Params<A::
     digest.0
 }
 
-/// Every bit that three batches return, which is the same for any width `N`. Each is a function out
+/// Every bit that four batches return, which is the same for any width `N`. Each is a function out
 /// of line, which frees its stack before the next, because RAM has 16 KiB.
-pub fn batches<const N: usize, const BLOCKS_OF_20: usize, const BLOCKS_OF_8: usize>() -> [u64; 3] {
+pub fn batches<const N: usize, const BLOCKS_OF_20: usize, const BLOCKS_OF_8: usize>() -> [u64; 4] {
     [
         shared_params::<N, BLOCKS_OF_20>(),
         subnormal_batch::<N, BLOCKS_OF_20>(),
         own_params::<N, BLOCKS_OF_8>(),
+        measured::<N, BLOCKS_OF_8>(),
     ]
 }
 
@@ -124,7 +125,7 @@ pub fn batches<const N: usize, const BLOCKS_OF_20: usize, const BLOCKS_OF_8: usi
 pub fn shared_params<const N: usize, const BLOCKS: usize>() -> u64 {
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
     let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
-    batch::<20, N, _>(BatchMemory { blocks, generators, own: () }, |_| {})
+    batch::<20, N, Gymnasium, _>(BatchMemory { blocks, generators, own: () }, |_| {})
 }
 
 /// As [`shared_params`] with subnormal numbers.
@@ -132,7 +133,7 @@ pub fn shared_params<const N: usize, const BLOCKS: usize>() -> u64 {
 fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
     let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
-    batch::<20, N, _>(BatchMemory { blocks, generators, own: () }, |batch| {
+    batch::<20, N, Gymnasium, _>(BatchMemory { blocks, generators, own: () }, |batch| {
         let mut params = Params::DEFAULT;
         subnormal_torques::<Fast>(&mut params);
         // Neither fails: a failure changes the digest.
@@ -155,18 +156,47 @@ fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
     let mut own = [LaneParams::default(); BLOCKS];
     let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
     let memory = BatchMemory { blocks, generators, own: OwnParams::new(&mut own[..]) };
-    batch::<8, N, _>(memory, |batch| {
+    batch::<8, N, Gymnasium, _>(memory, |batch| {
         // It does not fail: a failure changes the digest.
         let _ = draws.and_then(|draws| batch.set_draws(draws));
         batch.reset();
     })
 }
 
+/// A batch of eight in `Fast`, through a motor and sensors that each reset draws.
+#[inline(never)]
+fn measured<const N: usize, const BLOCKS: usize>() -> u64 {
+    let uniform = |low, high| Some(Draw::Uniform { low, high });
+    let instruments = Instruments {
+        action_delay: uniform(0.0, 2.0),
+        observation_delay: uniform(0.0, 2.0),
+        motor_lag: Some(Draw::LogUniform { low: 0.01, high: 0.2 }),
+        torque_error: Some(Draw::Normal { mean: 0.0, std: 0.1, low: -0.3, high: 0.3 }),
+        angle_noise: uniform(0.0, 0.01),
+        encoder_zero1: uniform(-0.05, 0.05),
+        encoder_zero2: uniform(-0.05, 0.05),
+        encoder_counts: Some(Draw::exactly(4096.0)),
+        velocity_filter: uniform(0.0, 0.1),
+    };
+    let task = Measured::<_, 2>::new(Gymnasium, instruments);
+    let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 8]);
+    let (blocks, generators) = (&mut blocks[..], &mut generators[..]);
+    batch::<8, N, _, _>(BatchMemory { blocks, generators, own: () }, |batch| {
+        // It does not fail: a failure changes the digest.
+        let _ = task.map(|task| batch.set_task(task));
+        batch.reset();
+    })
+}
+
 /// Every bit that a batch returns in 200 steps under torque against θ̇1, which ends episodes.
-fn batch<const LEN: usize, const N: usize, S: Storage<Fast, N>>(
+fn batch<const LEN: usize, const N: usize, T, S>(
     memory: S,
-    prepare: impl FnOnce(&mut Batch<Fast, S, Gymnasium, N>),
-) -> u64 {
+    prepare: impl FnOnce(&mut Batch<Fast, S, T, N>),
+) -> u64
+where
+    T: Task<Observation = [f32; 6]>,
+    S: Storage<Fast, N, T::Memory>,
+{
     let Ok(mut batch) = Batch::new(42, memory) else {
         return 0;
     };
@@ -190,10 +220,11 @@ fn batch<const LEN: usize, const N: usize, S: Storage<Fast, N>>(
     digest.0
 }
 
-pub const BATCHES: [u64; 3] = [
+pub const BATCHES: [u64; 4] = [
     0xeae8_bc44_fb2b_ab5e, // shared parameters
     0xcc78_d474_8108_4cf5, // subnormal numbers
     0x386b_bd46_1da1_e6cd, // own parameters
+    0xbd12_ea2d_ae12_2f43, // a motor and sensors
 ];
 
 pub const SUBNORMAL: [u64; 4] = [

@@ -22,7 +22,7 @@ use acrobot::control::regulator::{dlqe, dlqr, lqr, tvlqr};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
-use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup, Task};
+use acrobot::task::{Draw, Draws, Gymnasium, Measured, ResetBounds, Swingup, Task};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use bits::oled::Display;
@@ -49,6 +49,7 @@ fn main() -> ! {
         all_of::<Portable, Gymnasium>();
         all_of::<Reference, Gymnasium>();
         all_of::<Damped<Fast>, Swingup>();
+        all_of::<Fast, Measured<Gymnasium>>();
         let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
         let own = OwnParams::new([LaneParams::default(); 2]);
         batch::<Fast, Gymnasium, 20, 16>(BatchMemory { blocks, generators, own });
@@ -149,7 +150,9 @@ fn environment<A: Arithmetic, T: Task>() {
         let mut acrobot = TimeLimit::with_task_limit(Acrobot::<A, T>::new(seed.clone()));
         let mut trajectory = Trajectory::<A::Scalar, 8>::new();
         let inner = acrobot.inner_mut();
+        inner.set_task(black_box(*inner.task()));
         let _ = black_box((
+            inner.set_memory(*inner.memory()),
             inner.set_params(params()),
             inner.set_state(state()),
             draws().and_then(|draws| inner.draw_params(&draws)),
@@ -186,7 +189,7 @@ fn environment<A: Arithmetic, T: Task>() {
 }
 
 /// A batch whose last block is not full.
-fn batch<A, T, const LEN: usize, const N: usize>(memory: impl Storage<A, N>)
+fn batch<A, T, const LEN: usize, const N: usize>(memory: impl Storage<A, N, T::Memory>)
 where
     A: Arithmetic,
     T: Task<Observation = [f32; 6]>,
@@ -198,7 +201,9 @@ where
     let (mut rewards, mut terminated, mut truncated) = ([0.0; LEN], [false; LEN], [false; LEN]);
     for _ in 0..black_box(10) {
         batch.set_autoreset(black_box(Autoreset::Disabled));
+        batch.set_task(black_box(*batch.task()));
         let _ = black_box((
+            batch.memory(black_box(3)).and_then(|memory| batch.set_memory(black_box(4), memory)),
             batch.set_all_params(params()),
             batch.set_params(black_box(3), params()),
             draws().and_then(|draws| batch.set_draws(draws)),
