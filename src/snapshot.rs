@@ -137,7 +137,7 @@ pub(crate) mod numbers {
                     if result.is_ok() {
                         let number = tuple.next_element();
                         let missing = || Z::Error::invalid_length(len, &self);
-                        result = number.and_then(|x| Ok(*to = x.ok_or_else(missing)?));
+                        result = number.and_then(|x| x.ok_or_else(missing)).map(|x| *to = x);
                         len += 1;
                     }
                 });

@@ -233,7 +233,7 @@ impl<T: Task, const DELAY: usize> Task for Measured<T, DELAY> {
     fn observation_high(&self, params: &Params<f32>) -> T::Observation {
         let mut params = *params;
         if self.instruments.velocity_filter.is_some() {
-            let highest = 3.1416 / params.dt;
+            let highest = 1.000_01 * core::f32::consts::PI / params.dt; // with its rounding
             params.max_velocity1 = params.max_velocity1.max(highest);
             params.max_velocity2 = params.max_velocity2.max(highest);
         }
@@ -293,6 +293,7 @@ fn delayed<S: Real, V: Numbers<S>>(delay: V, newest: V, past: &[V]) -> V {
 
 /// Puts a number in front of a line, whose last one is lost.
 #[inline(always)]
+#[expect(clippy::manual_swap, reason = "with a swap of lanes a step takes twice as long")]
 fn push<V: Copy>(mut newest: V, line: &mut [V]) {
     for number in line {
         let older = *number;

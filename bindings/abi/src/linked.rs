@@ -24,7 +24,7 @@ struct Functions {
     reward: fn(&Pose<f32>, &Params<f32>, f32, bool) -> f32,
 }
 
-const fn functions<T: Task<Observation = [f32; 6]>>(task: AnyTask) -> Functions {
+const fn functions<T: Task<Observation = [f32; 6], Memory = ()>>(task: AnyTask) -> Functions {
     Functions {
         task,
         bounds: T::RESET_BOUNDS,

@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Member, SimdLevel};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::task::{Draws, Gymnasium, ResetBounds, Swingup, Task};
+use acrobot::task::{Draws, Gymnasium, Measured, ResetBounds, Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use common::draws;
 use common::twins::{LEVELS, MODES, Twins};
@@ -72,7 +72,7 @@ fn call<A: Tested>() -> BoxedStrategy<Call<A::Scalar>> {
 }
 
 /// A member, the acrobot beside it, and whether its episode has ended.
-type Stored<A, T> = (Member<A>, TimeLimit<Acrobot<A, T>>, bool);
+type Stored<A, T> = (Member<A, <T as Task>::Memory>, TimeLimit<Acrobot<A, T>>, bool);
 
 struct Model<A: Arithmetic, T: Task, const N: usize> {
     twins: Twins<A, N, T>,
@@ -185,7 +185,7 @@ fn any_calls_in_any_order_equal_single_acrobots() {
     check::<Fast, Gymnasium, 3>();
     check::<Portable, Gymnasium, 4>();
     check::<Damped<Reference>, Gymnasium, 3>();
-    check::<Damped<Fast>, Swingup, 16>();
+    check::<Damped<Fast>, Measured<Swingup>, 16>();
 }
 
 #[test]
