@@ -83,8 +83,8 @@ impl Instruments {
 
     /// Checks what resets may draw.
     pub(super) fn check(&self, delay: usize) -> Result<(), Error> {
-        for (draw, field) in self.numbers().into_iter().zip(FIELDS) {
-            let (name, unit, ..) = field;
+        for ((name, draw), field) in self.numbers().into_iter().zip(FIELDS) {
+            let (_, unit, ..) = field;
             match draw {
                 None | Some(Draw::Fixed) => continue,
                 Some(draw) => draw.check(name, unit)?,
@@ -101,7 +101,8 @@ impl Instruments {
 
     /// Replaces the numbers of an acrobot by what a reset draws.
     pub(super) fn draw<S: Real, R: Rng + ?Sized>(&self, drawn: &mut [S; COUNT], rng: &mut R) {
-        for ((number, draw), (_, unit, ..)) in drawn.iter_mut().zip(self.numbers()).zip(FIELDS) {
+        let draws = self.numbers().into_iter().zip(FIELDS);
+        for (number, ((_, draw), (_, unit, ..))) in drawn.iter_mut().zip(draws) {
             *number = match draw {
                 None => S::ZERO,
                 Some(Draw::Fixed) => *number,
@@ -116,47 +117,27 @@ impl Instruments {
 }
 
 impl<D: Copy> Instruments<D> {
-    /// In the order of the fields.
-    #[inline(always)]
-    pub(super) fn numbers(&self) -> [D; COUNT] {
-        [
-            self.action_delay,
-            self.observation_delay,
-            self.motor_lag,
-            self.torque_error,
-            self.angle_noise,
-            self.encoder_zero1,
-            self.encoder_zero2,
-            self.encoder_counts,
-            self.velocity_filter,
-        ]
+    /// The name and the draw, or the number, of each, in the order of the fields.
+    #[must_use]
+    pub fn numbers(&self) -> [(&'static str, D); COUNT] {
+        let (mut numbers, mut fields) = (*self, FIELDS.into_iter());
+        let name = |number: &mut D| (fields.next().map_or("", |(name, ..)| name), *number);
+        numbers.numbers_mut().map(name)
     }
-}
 
-impl<D> From<[D; COUNT]> for Instruments<D> {
-    fn from(numbers: [D; COUNT]) -> Self {
-        let [
-            action_delay,
-            observation_delay,
-            motor_lag,
-            torque_error,
-            angle_noise,
-            encoder_zero1,
-            encoder_zero2,
-            encoder_counts,
-            velocity_filter,
-        ] = numbers;
-        Self {
-            action_delay,
-            observation_delay,
-            motor_lag,
-            torque_error,
-            angle_noise,
-            encoder_zero1,
-            encoder_zero2,
-            encoder_counts,
-            velocity_filter,
-        }
+    /// Each draw or number, to change it, in the order of the fields.
+    pub const fn numbers_mut(&mut self) -> [&mut D; COUNT] {
+        [
+            &mut self.action_delay,
+            &mut self.observation_delay,
+            &mut self.motor_lag,
+            &mut self.torque_error,
+            &mut self.angle_noise,
+            &mut self.encoder_zero1,
+            &mut self.encoder_zero2,
+            &mut self.encoder_counts,
+            &mut self.velocity_filter,
+        ]
     }
 }
 

@@ -58,7 +58,9 @@ impl<T: Task, const DELAY: usize> Measured<T, DELAY> {
     /// The instruments of an acrobot that remembers this, as a critic may see them.
     #[must_use]
     pub fn drawn<S: Real>(memory: &Remembered<Self, S>) -> Instruments<S> {
-        memory.0.0.0.into()
+        let mut drawn = Instruments::default();
+        drawn.numbers_mut().into_iter().zip(memory.0.0.0).for_each(|(to, number)| *to = number);
+        drawn
     }
 
     /// Replaces the instruments that an acrobot remembers. Those that the task draws are replaced
@@ -71,8 +73,9 @@ impl<T: Task, const DELAY: usize> Measured<T, DELAY> {
         memory: &mut Remembered<Self, S>,
         drawn: Instruments<S>,
     ) -> Result<(), Error> {
-        check_drawn(&drawn.numbers(), DELAY)?;
-        memory.0.0.0 = drawn.numbers();
+        let numbers = drawn.numbers().map(|(_, number)| number);
+        check_drawn(&numbers, DELAY)?;
+        memory.0.0.0 = numbers;
         Ok(())
     }
 
