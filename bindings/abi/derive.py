@@ -92,6 +92,7 @@ params = declared("src/physics/params.rs", "pub struct Params<S = f64>")
 params.sort(key=lambda field: field[0] == "dynamics")  # last, as in C
 costs = declared("src/control/plan/cost.rs", "pub struct Cost<S = f64>")
 stds = declared("src/control/estimate/parameter_std.rs", "pub struct ParameterStd<S = f64>")
+instruments = declared("src/task/instruments.rs", "pub struct Instruments<D = Option<Draw<f32>>>")
 values = read("src/physics/params.rs").partition("const ACROBOT: Self = Self {")[2]
 values = re.findall(r"(\w+): (\[.*?\]|[^,]+),", values.partition("};")[0])
 values = {name: value.removesuffix(" as S").strip("()") for name, value in values}
@@ -227,6 +228,12 @@ for field, kind, text, _ in params:
     lines += [*wrapped(text, "    #: "), f"    {name}: Any = {value}"]
     names += {"S": [name], "[S; 3]": [name] * 3}.get(kind, [])
 start, end = "    # derive.py writes the parameters.", "    # The end of the parameters."
+fill(f"{PYTHON}parameters.py", start, lines, end)
+lines = []
+for field, _, text, _ in instruments:
+    name = re.sub(r"(\d)$", r"_\1", field)
+    lines += [*wrapped(text, "    #: "), f"    {name}: Any = None"]
+start, end = "    # derive.py writes the instruments.", "    # The end of the instruments."
 fill(f"{PYTHON}parameters.py", start, lines, end)
 lines = [f"const NAMES: [&str; {len(names)}] = [", *(f'    "{name}",' for name in names)]
 fill("bindings/python/src/lib.rs", "// derive.py writes the names.", lines, "];")

@@ -70,6 +70,25 @@ impl Batch {
         with_batch!(&mut alone(slf)?.engine, many => many.set_drawn(name, drawn))
     }
 
+    /// Sets an instrument of all acrobots: no value, one, one for each, or what each reset draws.
+    fn set_instrument(
+        slf: &Bound<'_, Self>,
+        name: &str,
+        values: Vec<Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        alone(slf)?.engine.set_instrument(name, &values)
+    }
+
+    /// The number of an instrument of each acrobot.
+    fn instrument<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let this = alone(slf)?;
+        let numbers = match &this.engine {
+            Engine::Measured(many) => many.instrument(name),
+            _ => vec![0.0; this.__len__()],
+        };
+        Ok(PyArray1::from_vec(slf.py(), numbers))
+    }
+
     /// The numbers of a parameter of each acrobot: three of `AVAIL_TORQUE`, two of `LINK_MOI`.
     fn get<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let this = alone(slf)?;
@@ -152,7 +171,8 @@ impl Batch {
             None => env.call_method1("_inputs", (actions,))?.extract()?,
         };
         let this = &mut *alone(slf)?;
-        with_batch!(&mut this.engine, many => many.read(inputs))?;
+        let task = this.engine.task();
+        with_batch!(&mut this.engine, many => many.read(task, inputs))?;
         let mut rewards = vec![0.0; len];
         let (mut terminated, mut truncated) = (vec![false; len], vec![false; len]);
         let mut observations = observations.try_readwrite()?; // all calls can share this array
@@ -164,8 +184,9 @@ impl Batch {
         }
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
-        let task = if matches!(engine, Engine::Float32(_)) { 16_384 } else { 1024 };
-        match len.div_ceil(task).min(this.threads.get() as usize) {
+        let is_single = matches!(engine, Engine::Float32(_) | Engine::Measured(_));
+        let share = if is_single { 16_384 } else { 1024 };
+        match len.div_ceil(share).min(this.threads.get() as usize) {
             1 => py.detach(|| with_batch!(engine, many => many.step(buffers, false))),
             threads => {
                 let pool = this.pool.of_this_process(threads)?;

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::task::{AnyTask, Draw, Draws};
+use acrobot::task::{AnyTask, Draw, Draws, Task};
 use acrobot::{Acrobot, Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -14,6 +14,7 @@ use pyo3::exceptions::{PyMemoryError, PyTypeError};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::instruments::{Setting, Through};
 use crate::{
     InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, shown, with,
     wrong,
@@ -49,6 +50,8 @@ pub enum Engine {
     Float64(Many<Damped<Reference>>),
     /// Computes as Gymnasium does.
     Host(Many<Damped<Host>>),
+    /// In `float32`, through a motor and sensors.
+    Measured(Many<Damped<Fast>, Through>),
 }
 
 impl Engine {
@@ -61,6 +64,33 @@ impl Engine {
         }
         .map_err(out_of_memory)
     }
+
+    pub fn task(&self) -> AnyTask {
+        match self {
+            Self::Float32(many) => *many.batch.task(),
+            Self::Float64(many) => *many.batch.task(),
+            Self::Host(many) => *many.batch.task(),
+            Self::Measured(many) => *many.batch.task().task(),
+        }
+    }
+
+    /// Sets an instrument. Acrobots without any get all.
+    pub fn set_instrument(&mut self, name: &str, values: &[Bound<'_, PyAny>]) -> PyResult<()> {
+        let setting = Setting::read(name, values)?;
+        match self {
+            Self::Measured(many) => many.set_instrument(name, &setting),
+            _ if matches!(setting, Setting::Ideal) => Ok(()),
+            Self::Float32(many) => {
+                let mut measured = Many::through(many)?;
+                measured.set_instrument(name, &setting)?;
+                *self = Self::Measured(measured);
+                Ok(())
+            }
+            _ => {
+                Err(wrong(name, "None with float64 and with gymnasium_episodes", shown(&values[0])))
+            }
+        }
+    }
 }
 
 /// Does something with the batch in an engine, whatever its arithmetic.
@@ -70,6 +100,7 @@ macro_rules! with_batch {
             $crate::engine::Engine::Float32($many) => $result,
             $crate::engine::Engine::Float64($many) => $result,
             $crate::engine::Engine::Host($many) => $result,
+            $crate::engine::Engine::Measured($many) => $result,
         }
     };
 }
@@ -77,9 +108,9 @@ pub(crate) use with_batch;
 
 /// A batch, and memory for its inputs. Numbers are `f64` outside, which `f32` becomes exactly.
 #[derive(Serialize, Deserialize)]
-#[serde(bound = "", transparent)]
-pub struct Many<A: Arithmetic> {
-    pub batch: VecBatch<A, AnyTask>,
+#[serde(bound = "T: Serialize + serde::de::DeserializeOwned", transparent)]
+pub struct Many<A: Arithmetic, T: Task = AnyTask> {
+    pub batch: VecBatch<A, T>,
     #[serde(skip)]
     actions: Vec<u8>,
     /// Empty if the inputs of the next step are actions.
@@ -87,10 +118,15 @@ pub struct Many<A: Arithmetic> {
     torques: Vec<A::Scalar>,
 }
 
-impl<A: Arithmetic> Many<A> {
-    fn new(task: AnyTask, len: usize, seed: SeedSequence) -> Result<Self, Error> {
-        let batch = VecBatch::with_task(seed, task, len)?;
-        Ok(Self { batch, actions: Vec::new(), torques: Vec::new() })
+impl<A: Arithmetic, T: Task> From<VecBatch<A, T>> for Many<A, T> {
+    fn from(batch: VecBatch<A, T>) -> Self {
+        Self { batch, actions: Vec::new(), torques: Vec::new() }
+    }
+}
+
+impl<A: Arithmetic, T: Task<Observation = [f32; 6]>> Many<A, T> {
+    fn new(task: T, len: usize, seed: SeedSequence) -> Result<Self, Error> {
+        VecBatch::with_task(seed, task, len).map(Self::from)
     }
 
     pub fn params(&self, index: usize) -> Params {
@@ -179,7 +215,7 @@ impl<A: Arithmetic> Many<A> {
     }
 
     /// Checks the inputs of the next step and copies them.
-    pub fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()> {
+    pub fn read(&mut self, task: AnyTask, inputs: Inputs<'_>) -> PyResult<()> {
         self.torques.clear();
         match inputs {
             Inputs::Actions(from) => {
@@ -190,7 +226,7 @@ impl<A: Arithmetic> Many<A> {
                 self.actions.extend(from.iter().map(|&action| action as u8));
             }
             Inputs::Torques(from) => {
-                let (from, task) = (from.as_slice()?, *self.batch.task());
+                let from = from.as_slice()?;
                 let rule = match task {
                     AnyTask::Swingup => "a number from -1 to 1",
                     _ => "a number, N m",
@@ -225,7 +261,7 @@ impl<A: Arithmetic> Many<A> {
 }
 
 /// A draw between two numbers, or between two with a mean and a standard deviation.
-fn draw<S: Real>(kind: &str, numbers: &[f64]) -> Draw<S> {
+pub fn draw<S: Real>(kind: &str, numbers: &[f64]) -> Draw<S> {
     let number = |i: usize| S::from_f64(numbers[i]);
     let (low, high) = (number(0), number(1));
     match kind {

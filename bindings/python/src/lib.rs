@@ -4,6 +4,7 @@ mod batch;
 mod control;
 mod engine;
 mod estimate;
+mod instruments;
 mod mpc;
 mod pool;
 mod single;
@@ -247,7 +248,7 @@ fn render<'py>(
 }
 
 /// Changes when a snapshot of another layout would be read.
-const SNAPSHOT_VERSION: u8 = 7;
+const SNAPSHOT_VERSION: u8 = 8;
 
 /// Serializes a snapshot, for pickle.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {

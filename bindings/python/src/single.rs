@@ -1,7 +1,8 @@
 //! The single environments: one acrobot, bit-identical to Gymnasium's, or of another task.
 
 use acrobot::arithmetic::{Damped, Host};
-use acrobot::task::AnyTask;
+use acrobot::numpy::Pcg64;
+use acrobot::task::{AnyTask, Instruments};
 use acrobot::{Portable, State, Step};
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyAssertionError;
@@ -10,6 +11,7 @@ use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
 use crate::engine::torque_of;
+use crate::instruments::{Setting, Through, place};
 use crate::{
     InvalidAction, Name, Params, alone, convert, invalid, load, must_be, named, rejected, render,
     save, shown, with, wrong,
@@ -22,6 +24,8 @@ pyo3::import_exception!(gymnasium.error, ResetNeeded);
 pub enum One {
     Host(acrobot::Acrobot<Damped<Host>, AnyTask>),
     Portable(acrobot::Acrobot<Damped<Portable>, AnyTask>),
+    /// Through a motor and sensors.
+    Measured(acrobot::Acrobot<Damped<Portable>, Through>),
 }
 
 /// Does something with the acrobot, whatever its arithmetic.
@@ -30,6 +34,7 @@ macro_rules! with_one {
         match $one {
             One::Host($acrobot) => $result,
             One::Portable($acrobot) => $result,
+            One::Measured($acrobot) => $result,
         }
     };
 }
@@ -44,7 +49,30 @@ impl One {
     }
 
     fn task(&self) -> AnyTask {
-        with_one!(self, acrobot => *acrobot.task())
+        match self {
+            Self::Host(acrobot) => *acrobot.task(),
+            Self::Portable(acrobot) => *acrobot.task(),
+            Self::Measured(acrobot) => *acrobot.task().task(),
+        }
+    }
+
+    /// The same acrobot with this instrument.
+    fn through(&self, name: &str, setting: &Setting) -> PyResult<Self> {
+        let mut acrobot = match self {
+            Self::Measured(acrobot) => acrobot.clone(),
+            _ if matches!(setting, Setting::Ideal) => return Ok(self.clone()),
+            _ => {
+                let task = Through::new(self.task(), Instruments::IDEAL).map_err(rejected)?;
+                let mut acrobot = acrobot::Acrobot::with_task(0, task).map_err(rejected)?;
+                acrobot.set_params(self.params()).map_err(rejected)?;
+                acrobot.set_state(self.state()).map_err(rejected)?;
+                acrobot
+            }
+        };
+        acrobot.set_task(setting.task(acrobot.task(), name)?);
+        let memory = setting.remember::<Damped<Portable>>(name, 0, *acrobot.memory())?;
+        acrobot.set_memory(memory).map_err(rejected)?;
+        Ok(Self::Measured(acrobot))
     }
 
     pub fn params(&self) -> Params {
@@ -122,6 +150,34 @@ impl Acrobot {
         }
         changed.validate()?;
         *this = changed;
+        Ok(())
+    }
+
+    /// Sets an instrument: no value, one, or what each reset draws.
+    fn set_instrument(
+        slf: &Bound<'_, Self>,
+        name: &str,
+        values: Vec<Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let setting = Setting::read(name, &values)?;
+        let mut this = alone(slf)?;
+        this.acrobot = this.acrobot.through(name, &setting)?;
+        Ok(())
+    }
+
+    fn instrument(slf: &Bound<'_, Self>, name: &str) -> PyResult<f64> {
+        Ok(match &alone(slf)?.acrobot {
+            One::Measured(acrobot) => *place(&mut Through::drawn(acrobot.memory()), name),
+            _ => 0.0,
+        })
+    }
+
+    /// Draws the instruments from a generator with this seed.
+    fn draw_instruments(slf: &Bound<'_, Self>, seed: u64) -> PyResult<()> {
+        if let One::Measured(acrobot) = &mut alone(slf)?.acrobot {
+            *acrobot.rng_mut() = Pcg64::new(seed);
+            acrobot.reset();
+        }
         Ok(())
     }
 

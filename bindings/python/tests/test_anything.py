@@ -38,7 +38,7 @@ ANYTHING = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(), inner),
     max_leaves=4,
 )
-NAMES = st.sampled_from(tuple(dict.fromkeys((*acrobot_rs.AcrobotEnv._NAMES, *Swingup._NAMES))))
+NAMES = st.sampled_from(tuple(dict.fromkeys((*acrobot_rs.AcrobotEnv._ALL, *Swingup._ALL))))
 TORQUES = st.lists(NUMBERS, min_size=3, max_size=3)
 VALUES = st.one_of(NUMBERS, TORQUES, st.sampled_from(["book", "nips"]), ANYTHING)
 DRAWN = st.one_of(

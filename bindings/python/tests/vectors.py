@@ -61,7 +61,7 @@ def rejects(env, error, message=None):
     """Expects an error, and that nothing changes."""
     before = pickle.dumps(env)
     with pytest.raises(error, match=message):
-        yield
+        yield env
     assert pickle.dumps(env) == before
 
 

@@ -102,8 +102,11 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             given = finite("state", rule, options["state"], (4,), LARGEST)
         super().reset(seed=seed)
         drawn = self._draw(low, high)
+        is_measured = any(getattr(self, name) is not None for name in self._INSTRUMENTS)
+        if is_measured:
+            self._native.draw_instruments(int(self.np_random.integers(2**63)))
         self.state = state = drawn if given is None else given
-        if self._TASK != "gymnasium":
+        if self._TASK != "gymnasium" or is_measured:
             return self._native.observation(), {}
         s = state.astype(np.float32)
         # Gymnasium's calls of NumPy, whose float32 sines are its own.
@@ -127,6 +130,10 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             wrapper of ``gymnasium.make`` truncates; and an empty info.
         """
         return self._native.step(self, action)
+
+    def get_parameter(self, name: str) -> Any:
+        """A parameter, or the number of an instrument that the last reset drew; 0 is ideal."""
+        return self._native.instrument(name) if name in self._INSTRUMENTS else getattr(self, name)
 
     def render(self) -> NDArray[np.uint8] | str | None:
         """An array of shape ``(500, 500, 3)`` or a text.

@@ -64,6 +64,10 @@ class Parameters:
     Set them as arguments, on an environment or in a subclass, whose parameters a new environment
     copies. An environment checks a value immediately, which acts from the next step. The spaces
     follow. A single environment may have any number of torques.
+
+    The names in small letters from ``action_delay`` on are instruments: the motor and the sensors
+    of a real acrobot. ``None`` is ideal, and delays are at most 8 steps. Rewards and ends use the true state. A number acts at
+    once, and a draw from the next reset on.
     """
 
     # derive.py writes the parameters.
@@ -117,12 +121,36 @@ class Parameters:
     book_or_nips: Any = "book"
     # The end of the parameters.
 
+    # derive.py writes the instruments.
+    #: How many steps later a torque acts: a whole number, each equally likely.
+    action_delay: Any = None
+    #: How many steps later an agent sees a reading: a whole number, each equally likely.
+    observation_delay: Any = None
+    #: The time constant of the motor, s, from 0 to 1000: the torque approaches the chosen one.
+    motor_lag: Any = None
+    #: The relative error of the motor's torque, from −1 to 1000: with 0.1 it is 10 % too large.
+    torque_error: Any = None
+    #: The standard deviation of a reading of an angle, rad, from 0 to 10.
+    angle_noise: Any = None
+    #: What encoder 1 reads where θ1 is 0, rad, from −π to π.
+    encoder_zero_1: Any = None
+    #: What encoder 2 reads where θ2 is 0, rad, from −π to π.
+    encoder_zero_2: Any = None
+    #: The counts of the encoders for a turn, from 1 to 2²²: readings are whole counts.
+    encoder_counts: Any = None
+    #: The time constant of a low-pass filter, s, from 0 to 1000. The agent sees filtered
+    #: differences of readings as velocities, and not the true ones.
+    velocity_filter: Any = None
+    # The end of the instruments.
+
     metadata: dict[str, Any]
     spec: Any
     render_mode: str | None
     _native: Acrobot | Batch
-    #: The names of the parameters.
+    #: The names of the parameters, of the instruments, and of both.
     _NAMES: tuple[str, ...] = ()
+    _INSTRUMENTS: tuple[str, ...] = ()
+    _ALL: tuple[str, ...] = ()
     #: The task, by its name in Rust.
     _TASK = "gymnasium"
     #: The default bound of initial states, rad and rad/s.
@@ -135,17 +163,17 @@ class Parameters:
         self, native: Acrobot | Batch, render_mode: str | None, parameters: Mapping[str, Any]
     ) -> None:
         """Pass these parameters, and those of the class, to the native part."""
-        for name in parameters.keys() - set(self._NAMES):
+        for name in parameters.keys() - set(self._ALL):
             # Other programs, such as torchrl, look for Python's words.
             words = f"{type(self).__name__}.__init__() got an unexpected keyword argument {name!r}"
-            raise TypeError(f"{words}; the parameters are {', '.join(self._NAMES)}")
+            raise TypeError(f"{words}; the parameters are {', '.join(self._ALL)}")
         modes = self.metadata["render_modes"]
         if render_mode not in (None, *modes):
             raise must_be("render_mode", f"None or one of {modes}", repr(render_mode))
         self._native = native
         self.render_mode = render_mode
         # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
-        values = {name: getattr(self, name) for name in self._NAMES}
+        values = {name: getattr(self, name) for name in self._ALL}
         if "LINK_MOI" in parameters:
             values |= {"LINK_MOI_1": None, "LINK_MOI_2": None}
         for name, value in (values | {**parameters}).items():
@@ -157,11 +185,14 @@ class Parameters:
     @property
     def parameters(self) -> dict[str, Any]:
         """All parameters by their names: arguments that make the same environment again."""
-        values = {name: getattr(self, name) for name in self._NAMES}
+        values = {name: getattr(self, name) for name in self._ALL}
         return {name: value for name, value in values.items() if value is not None}
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it unchangeable."""
+        if name in self._INSTRUMENTS:
+            self._native.set_instrument(name, [] if value is None else [value])
+            return value if value is None or isinstance(value, Drawn) else float(value)
         self._native.set(name, value)
         return self._fixed(name, value)
 
@@ -194,8 +225,12 @@ class Parameters:
         lows, highs = (getattr(torque, each, torque) for each in ("low", "high"))
         bounds: tuple[Any, ...] = (self.MAX_VEL_1, self.MAX_VEL_2)
         velocities = (np.max(getattr(each, "high", each)) for each in bounds)
-        # After a step, or after a reset with the default bounds.
-        first, second = (max(each, self._BOUND) for each in velocities)
+        # After a step, or after a reset with the default bounds; differences of readings within
+        # half a turn.
+        least = self._BOUND
+        if self.velocity_filter is not None:
+            least = max(least, 1.00001 * math.pi / np.min(getattr(self.dt, "low", self.dt)))
+        first, second = (max(each, least) for each in velocities)
         return max(np.min(lows), -LARGEST), min(np.max(highs), LARGEST), first, second
 
     if not TYPE_CHECKING:  # a checker would accept all names
@@ -203,11 +238,11 @@ class Parameters:
         def __setattr__(self, name: str, value: Any) -> None:
             """Check a parameter and set it."""
             is_made, cls = "observation_space" in vars(self), type(self)
-            if name in self._NAMES:
+            if name in self._ALL:
                 value = self._pass(name, value)
             elif is_made and cls.__module__.startswith("acrobot_rs."):  # subclasses may have others
                 if not (name.startswith("_") or name in vars(self) or hasattr(cls, name)):
-                    rule = f"the parameters are {', '.join(self._NAMES)}"
+                    rule = f"the parameters are {', '.join(self._ALL)}"
                     raise AttributeError(f"{cls.__name__} has no attribute {name!r}; {rule}")
             super().__setattr__(name, value)
             if name == "LINK_MOI":
@@ -215,7 +250,7 @@ class Parameters:
             if name == "dt" and isinstance(value, float):
                 fps = 15 if value == 0.2 else 1 / value  # Gymnasium's, or real time
                 self.metadata = {**self.metadata, "render_fps": fps}
-            if is_made and name in ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2"):
+            if is_made and name in _OF_SPACES:
                 for space, new in self._spaces().items():
                     current = getattr(self, space)
                     if current != new:
@@ -229,5 +264,9 @@ class Parameters:
         logger.warn(f"render of {type(self).__name__} returns None, because {what}")
 
 
+#: What the spaces depend on.
+_OF_SPACES = ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2", "dt", "velocity_filter")
 _PUBLIC = (name for name in Parameters.__annotations__ if not name.startswith("_"))
-Parameters._NAMES = tuple(name for name in _PUBLIC if hasattr(Parameters, name))
+Parameters._ALL = tuple(name for name in _PUBLIC if hasattr(Parameters, name))
+_FIRST = Parameters._ALL.index("action_delay")
+Parameters._NAMES, Parameters._INSTRUMENTS = Parameters._ALL[:_FIRST], Parameters._ALL[_FIRST:]

@@ -121,11 +121,15 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         return {f"single_{name}": space for name, space in single.items()} | batched
 
     def _pass(self, name: str, value: Any) -> Any:
+        is_instrument = name in self._INSTRUMENTS
+        if is_instrument and (value is None or isinstance(value, Drawn)):
+            return super()._pass(name, value)
         if isinstance(value, Drawn):
             self._native.set_drawn(name, value)
             return value
         each = arrays.values_of_each(name, value, self.num_envs)
-        self._native.set(name, [value] if each is None else each)
+        set_values = self._native.set_instrument if is_instrument else self._native.set
+        set_values(name, [value] if each is None else each)
         if each is None:
             return self._fixed(name, value)
         values = np.array([self._fixed(name, one) for one in each])
@@ -231,14 +235,14 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """The value of an attribute for each environment, or what its method ``render`` returns."""
-        known = (*_ATTRIBUTES, *self._NAMES)
+        known = (*_ATTRIBUTES, *self._ALL)
         if name not in known:
             they_have = f"they have {', '.join(known)}"
             raise AttributeError(f"the environments have no attribute {name!r}; {they_have}")
         if name == "render":
             frames = self.render(*args, **kwargs)
             return (None,) * self.num_envs if frames is None else frames
-        if name in self._NAMES:
+        if name in self._ALL:
             values = self.get_parameter(name).tolist()
             return tuple(map(tuple, values) if name == "AVAIL_TORQUE" else values)
         value = getattr(self, f"single_{name}" if name.endswith("_space") else name)
@@ -253,7 +257,9 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if value is not None and not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
-        rows = self._native.get(name).reshape(self.num_envs, -1)
+        native = self._native
+        get = native.instrument if name in self._INSTRUMENTS else native.get
+        rows = get(name).reshape(self.num_envs, -1)
         return rows if is_row else rows[:, 0]
 
     def set_attr(self, name: str, values: Any) -> None:
