@@ -330,8 +330,12 @@ mod snapshot {
         params: Params<A::Scalar>,
         state: State<A::Scalar>,
         rng: R,
-        #[serde(serialize_with = "numbers::serialize::<A::Scalar, T::Memory, _>")]
-        #[serde(deserialize_with = "numbers::deserialize::<A::Scalar, T::Memory, _>")]
+        #[serde(
+            skip_serializing_if = "numbers::is_empty::<A::Scalar, T::Memory>",
+            default = "numbers::zeros::<A::Scalar, T::Memory>",
+            serialize_with = "numbers::serialize::<A::Scalar, T::Memory, _>",
+            deserialize_with = "numbers::deserialize::<A::Scalar, T::Memory, _>"
+        )]
         memory: Remembered<T, A::Scalar>,
     }
 

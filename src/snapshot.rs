@@ -8,13 +8,10 @@ use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
 use crate::arithmetic::Arithmetic;
-use crate::task::Task;
+use crate::task::{NAME_LIMIT, Task};
 
 /// Incremented whenever the fields of any snapshot change.
 const VERSION: u32 = 6;
-
-/// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile.
-pub(crate) const LIMIT: usize = 16;
 
 /// The first field of a snapshot of an acrobot or a batch.
 pub(crate) struct Header<A, T, const BATCH: bool> {
@@ -47,8 +44,8 @@ impl<A: Arithmetic, T: Task, const BATCH: bool> Header<A, T, BATCH> {
         4 + Self::OF.len() + T::NAME.len() + A::NAME.len() + 2 * size_of::<T>();
 
     const OF: &str = {
-        assert!(A::NAME.len() <= LIMIT, "an arithmetic's NAME must have at most 16 bytes");
-        assert!(T::NAME.len() <= LIMIT, "a task's NAME must have at most 16 bytes");
+        assert!(A::NAME.len() <= NAME_LIMIT, "an arithmetic's NAME must have at most 16 bytes");
+        assert!(T::NAME.len() <= NAME_LIMIT, "a task's NAME must have at most 16 bytes");
         if BATCH { "batch" } else { "acrobot" }
     };
 
@@ -74,7 +71,7 @@ where
 {
     /// Rejects any other header.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let found: Fields<String<LIMIT>, T> =
+        let found: Fields<String<NAME_LIMIT>, T> =
             Fields::deserialize(deserializer).map_err(|error| {
                 D::Error::custom(format_args!(
                     "{error}; the input must be a snapshot of version {VERSION}"
@@ -101,6 +98,15 @@ pub(crate) mod numbers {
 
     use crate::math::{Real, Zeros};
     use crate::task::Memory;
+
+    /// Tasks that remember nothing have no field for it in formats with names.
+    pub(crate) fn is_empty<S: Real, M: Memory>(_: &M::Of<S>) -> bool {
+        M::LEN == 0
+    }
+
+    pub(crate) fn zeros<S: Real, M: Memory>() -> M::Of<S> {
+        Zeros::ZEROS
+    }
 
     pub(crate) fn serialize<S: Real, M: Memory, Z: Serializer>(
         memory: &M::Of<S>,

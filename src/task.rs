@@ -40,6 +40,11 @@ use crate::arithmetic::{Arithmetic, Numbers, Real};
 use crate::error::Error;
 use crate::physics::{Given, Params, State, directions, positions};
 
+/// The longest name of a task or an arithmetic, bytes. Saving an acrobot with a longer one does not
+/// compile.
+#[cfg(feature = "serde")]
+pub(crate) const NAME_LIMIT: usize = 16;
+
 /// What an acrobot is to do. Its functions compute for one acrobot or for many side by side, so
 /// they have no branches: [an example](crate::guide::tasks).
 pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {

@@ -40,10 +40,14 @@ pub struct Member<A: Arithmetic, M: Memory = ()> {
     /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,
     /// What the [task remembers](Task::Memory).
-    #[cfg_attr(feature = "serde", serde(serialize_with = "numbers::serialize::<A::Scalar, M, _>"))]
     #[cfg_attr(
         feature = "serde",
-        serde(deserialize_with = "numbers::deserialize::<A::Scalar, M, _>")
+        serde(
+            skip_serializing_if = "numbers::is_empty::<A::Scalar, M>",
+            default = "numbers::zeros::<A::Scalar, M>",
+            serialize_with = "numbers::serialize::<A::Scalar, M, _>",
+            deserialize_with = "numbers::deserialize::<A::Scalar, M, _>"
+        )
     )]
     pub memory: M::Of<A::Scalar>,
 }

@@ -317,8 +317,9 @@ mod snapshot {
     use serde::de::{Deserialize, Deserializer, Error};
     use serde::ser::{Serialize, Serializer};
 
-    use super::{Instruments, Measured, Task};
-    use crate::snapshot::LIMIT;
+    use super::Measured;
+    use crate::task::instruments::Instruments;
+    use crate::task::{NAME_LIMIT, Task};
 
     #[derive(serde::Serialize, serde::Deserialize)]
     #[serde(rename = "Measured")]
@@ -345,7 +346,7 @@ mod snapshot {
         /// Rejects another task, another `DELAY`, and what [`Measured::new`] rejects.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
             let Data { task, data, instruments, longest_delay } =
-                Data::<String<LIMIT>, T>::deserialize(deserializer)?;
+                Data::<String<NAME_LIMIT>, T>::deserialize(deserializer)?;
             let named = data.named(&task).filter(|_| longest_delay as usize == DELAY);
             let task = named.ok_or_else(|| {
                 D::Error::custom(format_args!(
