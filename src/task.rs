@@ -6,6 +6,7 @@
 mod any;
 mod balance;
 mod draws;
+mod encoders;
 pub(crate) mod episode;
 mod gymnasium;
 mod instruments;
@@ -26,6 +27,7 @@ use rand_core::Rng;
 pub use any::AnyTask;
 pub use balance::Balance;
 pub use draws::{Draw, Draws};
+pub use encoders::Encoders;
 pub use gymnasium::{Gymnasium, GymnasiumV0};
 pub use instruments::Instruments;
 pub use measured::Measured;
@@ -38,7 +40,7 @@ pub use swingup::Swingup;
 
 use crate::arithmetic::{Arithmetic, Numbers, Real};
 use crate::error::Error;
-use crate::physics::{Given, Params, State, directions, positions};
+use crate::physics::{Given, Params, State, directions, positions, sin_cos};
 
 /// The longest name of a task or an arithmetic, bytes. Saving an acrobot with a longer one does not
 /// compile.
@@ -213,6 +215,14 @@ pub struct Pose<'a, V, M = ()> {
     pub sin_cos: [(V, V); 2],
     /// What the task remembers.
     pub memory: &'a M,
+}
+
+impl<S: Real> Pose<'_, S> {
+    /// The pose of a state, with the sines of an arithmetic.
+    #[must_use]
+    pub fn of<A: Arithmetic<Scalar = S>>(state: State<S>) -> Self {
+        Self::new(state, sin_cos::<A>([state.theta1, state.theta2]))
+    }
 }
 
 impl<V> Pose<'_, V> {

@@ -5,7 +5,9 @@ use acrobot::arithmetic::{Arithmetic, Damped};
 use acrobot::batch::{Autoreset, VecBatch};
 use acrobot::env::Env;
 use acrobot::physics::wrap;
-use acrobot::task::{Draw, Gymnasium, GymnasiumV0, Instruments, Measured, Swingup, Task};
+use acrobot::task::{
+    Draw, Encoders, Gymnasium, GymnasiumV0, Instruments, Measured, Pose, Swingup, Task,
+};
 use acrobot::{Acrobot, Action, Error, Fast, Portable, ResetOptions, State};
 use common::smooth::Smooth;
 use common::twins::{LEVELS, Twins};
@@ -208,6 +210,41 @@ fn velocities_are_filtered_differences_of_readings() {
         assert!((seen - velocity).abs() < 1e-4, "{seen} {velocity}");
         before = slow.state();
     }
+}
+
+/// A policy sees on a machine, whose encoders count turns, what it saw in training.
+#[test]
+fn encoders_give_the_readings_of_a_simulation() {
+    let instruments = Instruments {
+        encoder_counts: Some(Draw::exactly(1000.0)),
+        velocity_filter: Some(Draw::exactly(0.05)),
+        ..Instruments::IDEAL
+    };
+    let mut acrobot = measured::<Fast, Gymnasium>(instruments);
+    acrobot.set_state(State::HANGING).unwrap();
+    let mut encoders = Encoders::new(1000, 0.05, 0.2, [5000, -3000]).unwrap();
+    let mut turns = 0;
+    for i in 0..500 {
+        let action = if i / 9 % 2 == 0 { Action::Positive } else { Action::Negative };
+        let observation = acrobot.step(action).observation;
+        let of_a_radian = 1000.0 * std::f64::consts::TAU.recip() as f32;
+        let State { theta1, theta2, .. } = acrobot.state();
+        let counts = [theta1, theta2].map(|x| libm::rintf(x * of_a_radian) as i32);
+        turns += i32::from(counts[1].abs() > 400);
+        let state = encoders.read([counts[0] + 1000 * turns, counts[1] - 7000]);
+        assert_eq!(Gymnasium.observe::<Fast, f32>(&Pose::of::<Fast>(state)), observation);
+    }
+    assert!(turns > 5, "{turns}");
+    let rejected =
+        |of_a_turn, filter, dt| Encoders::new(of_a_turn, filter, dt, [0; 2]).unwrap_err();
+    assert_eq!(
+        rejected(0, 0.0, 1.0).to_string(),
+        "encoder_counts must be from 1 to 2²² a turn, got 0"
+    );
+    assert_eq!(rejected(1, -1.0, 1.0).name(), "velocity_filter");
+    assert_eq!(rejected(1, 0.0, 0.0).name(), "dt");
+    let mut extreme = Encoders::new(3, 0.0_f64, 1.0, [i32::MIN, i32::MAX]).unwrap();
+    assert!(extreme.read([i32::MAX, i32::MIN]).theta1.abs() < 3.15);
 }
 
 #[test]

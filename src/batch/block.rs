@@ -104,7 +104,7 @@ impl<A: Arithmetic, const N: usize, M: Memory> Block<A, N, M> {
         rng: Option<&mut Pcg64>,
     ) {
         self.set_state(lane, state);
-        let pose = Pose::new(state, sin_cos::<A>([state.theta1, state.theta2]));
+        let pose = Pose::of::<A>(state);
         let mut memory = self.memory(lane);
         task.begin::<A, _>(&mut memory, &pose, rng);
         self.set_memory(lane, &memory);

@@ -4,6 +4,7 @@ use core::num::NonZeroU32;
 
 use rand_core::Rng;
 
+use super::encoders::{approach, differentiate, scale};
 use super::instruments::{COUNT, Instruments, check_drawn};
 use super::memory::check_finite;
 use super::noise::{self, Noise};
@@ -104,16 +105,17 @@ impl<T: Task, const DELAY: usize> Measured<T, DELAY> {
                 *angle = *angle + deviation * noise::normal::<S, V>(noise);
             }
         }
+        for angle in &mut angles {
+            *angle = wrap_each::<S, V>(*angle);
+        }
         if self.instruments.encoder_counts.is_some() {
-            let of_a_radian = counts * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
-            let resolution = V::splat(S::from_f64(1.0)) / of_a_radian;
+            let [of_a_radian, resolution] = scale::<S, V>(counts);
             for angle in &mut angles {
                 let counted = (*angle * of_a_radian).map(S::round_small) * resolution;
                 *angle = counts.select_abs_le(S::ZERO, *angle, counted);
             }
         }
         let [theta1, theta2] = angles;
-        let [theta1, theta2] = [wrap_each::<S, V>(theta1), wrap_each::<S, V>(theta2)];
         [theta1, theta2, state.dtheta1, state.dtheta2]
     }
 }
@@ -201,15 +203,7 @@ impl<T: Task, const DELAY: usize> Task for Measured<T, DELAY> {
         }
         *newest = self.read(drawn, noise, pose.state);
         if self.instruments.velocity_filter.is_some() {
-            let rate = V::splat(A::Scalar::from_f64(1.0)) / params.dt;
-            let [theta1, theta2, dtheta1, dtheta2] = newest;
-            let [before1, before2, slow1, slow2] = before;
-            for (dtheta, turned, slow) in
-                [(dtheta1, *theta1 - before1, slow1), (dtheta2, *theta2 - before2, slow2)]
-            {
-                let difference = wrap_each::<A::Scalar, V>(turned) * rate;
-                *dtheta = approach(slow, difference, filter, params.dt);
-            }
+            differentiate::<A::Scalar, V>(newest, before, filter, params.dt);
         }
         self.task.remember::<A, V>(inner, pose, params, torque);
     }
@@ -273,8 +267,7 @@ impl<T: Task, const DELAY: usize> Task for Measured<T, DELAY> {
             if holds { Ok(()) } else { Err(Error::OutOfRange { name, value, unit, rule }) }
         };
         for angle in [theta1, theta2].into_iter().chain(past1).chain(past2) {
-            let pi = S::PI.to_f64();
-            check("reading", *angle, -pi, pi, "rad", "from -π to π")?;
+            check("reading", *angle, -3.15, 3.15, "rad", "from -3.15 to 3.15")?; // rounded counts
         }
         for number in noise {
             check("noise", *number, 0.0, f64::from(noise::PERIOD - 1), "", "from 0 to 2²³ - 1")?;
@@ -303,12 +296,6 @@ fn push<V: Copy>(mut newest: V, line: &mut [V]) {
         *number = newest;
         newest = older;
     }
-}
-
-/// One step of a low-pass filter with this time constant, s: implicit Euler.
-#[inline(always)]
-fn approach<S: Real, V: Numbers<S>>(slow: V, target: V, time_constant: V, dt: V) -> V {
-    slow + dt / (dt + time_constant) * (target - slow)
 }
 
 #[cfg(feature = "serde")]

@@ -138,6 +138,11 @@ impl Machine {
         State::from(self.state)
     }
 
+    /// Puts the machine into a state.
+    pub fn set_state(&mut self, state: State) {
+        self.state = state.into();
+    }
+
     /// The larger deviation of both true angles from upright, rad.
     #[must_use]
     pub fn lean(&self) -> f64 {
