@@ -102,7 +102,7 @@ impl<A: Arithmetic> Estimator<A> {
     ///
     /// The errors of [`Pendulum::new`], and a [noise](Noise) is out of its range.
     pub fn new(params: Params<A::Scalar>, noise: Noise<A::Scalar>) -> Result<Self, Error> {
-        Self::build(params, noise, [])
+        Self::build(Pendulum::new(params, State::HANGING)?, noise, [])
     }
 }
 
@@ -118,7 +118,7 @@ impl<A: Arithmetic> ParameterEstimator<A> {
         std: ParameterStd<A::Scalar>,
         noise: Noise<A::Scalar>,
     ) -> Result<Self, Error> {
-        Self::with_std(params, std, noise)
+        Self::with_std(Pendulum::new(params, State::HANGING)?, std, noise)
     }
 }
 
@@ -126,14 +126,14 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     /// An estimator of the first `K` parameters.
     #[expect(clippy::indexing_slicing, reason = "i is below K, which is at most PARAMETERS")]
     pub(in crate::control) fn with_std(
-        params: Params<A::Scalar>,
+        model: Pendulum<A>,
         std: ParameterStd<A::Scalar>,
         noise: Noise<A::Scalar>,
     ) -> Result<Self, Error> {
         const { assert!(K <= PARAMETERS) };
         let (std, zero, one) = (std.numbers(), A::Scalar::ZERO, A::Scalar::ONE);
         let instruments = [("zero1", zero), ("zero2", zero), ("torque_factor", one)];
-        let given = estimated(params.numbers(), instruments);
+        let given = estimated(model.params().numbers(), instruments);
         let units = ["rad", "rad", "of the torque"].map(|unit| ("", unit, Range::AtLeastZero));
         let units = estimated(FIELDS, units);
         let mut parameters = [Parameter::NONE; K];
@@ -152,15 +152,14 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
             let limits = [if is_negative { zero } else { given - most }, given + most];
             *parameter = Parameter { deviation, limits, ..Parameter::NONE };
         }
-        Self::build(params, noise, parameters)
+        Self::build(model, noise, parameters)
     }
 
     fn build(
-        params: Params<A::Scalar>,
+        model: Pendulum<A>,
         noise: Noise<A::Scalar>,
         parameters: [Parameter<A::Scalar, K>; K],
     ) -> Result<Self, Error> {
-        let model = Pendulum::new(params, State::HANGING)?;
         let mut given = Given::new(model.params(), noise)?;
         let Params { coulomb1, coulomb2, .. } = *model.params();
         let doubts = parameters.iter().enumerate().filter(|(i, _)| FRICTION.contains(i));

@@ -2,7 +2,7 @@
 
 use core::f32::consts::TAU;
 
-use super::delay::{Arithmetic, Delay};
+use super::delay::{Arithmetic, Delay, model};
 use crate::control::estimate::{KalmanFilter, Noise, ParameterStd, USUAL};
 use crate::control::plan::Knot;
 use crate::control::units::Units;
@@ -163,9 +163,10 @@ impl<const N: usize> Controller<N> {
         let [counts1, counts2] = settings.counts;
         let angle = ANGLE * TAU / counts1.min(counts2) as f32;
         let noise = Noise { angle_std: angle, torque_std: TORQUE * settings.limit };
+        let model = model(settings.params, State::HANGING)?;
         Ok(Self {
             settings,
-            estimator: KalmanFilter::with_std(settings.params, settings.doubt(), noise)?,
+            estimator: KalmanFilter::with_std(model, settings.doubt(), noise)?,
             plan: [Knot::EMPTY; N],
             next: 0,
             last: Knot::EMPTY,
