@@ -7,6 +7,8 @@
 //! Constants have the machine's own units or none. Those that count measurements are of statistics,
 //! which need a number of samples and not a time.
 
+use core::array::from_fn;
+
 use super::noise::{Given, Noise};
 use super::parameter_std::{
     FRICTION, PARAMETERS, Parameter, ParameterStd, ROTOR, ZEROS, estimated,
@@ -231,7 +233,11 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     #[expect(clippy::indexing_slicing, reason = "i is below K")]
     fn begin(&mut self, state: State<A::Scalar>) -> Option<Matrix<A::Scalar>> {
         for (i, parameter) in self.parameters.iter_mut().enumerate() {
-            parameter.with_state = [A::Scalar::ZERO; 4];
+            let deviation = parameter.deviation;
+            parameter.with_state = from_fn(|angle| match ZEROS.get(angle) == Some(&i) {
+                true => -deviation,
+                false => A::Scalar::ZERO,
+            });
             parameter.with_params = [A::Scalar::ZERO; K];
             parameter.with_params[i] = A::Scalar::ONE;
         }
@@ -239,16 +245,10 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         self.torque = limits[1];
         self.model.set_state(state).ok()?;
         // An angle is as wrong as the zero that was taken off.
-        let mut of_angles = [of_angle; 2];
-        for ((i, place), variance) in ZEROS.into_iter().enumerate().zip(&mut of_angles) {
-            let Some(Parameter { deviation, with_state, .. }) = self.parameters.get_mut(place)
-            else {
-                break;
-            };
-            with_state[i] = -*deviation;
-            *variance = of_angle + *deviation * *deviation;
-        }
-        let [of_angle1, of_angle2] = of_angles;
+        let [of_angle1, of_angle2] = ZEROS.map(|place| {
+            let zero = self.parameters.get(place).map_or(A::Scalar::ZERO, |own| own.deviation);
+            of_angle + zero * zero
+        });
         Some(spread([of_angle1, of_angle2, of_velocity, of_velocity]))
     }
 
