@@ -27,6 +27,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A plan needs 50 kB.
     println!("cargo:rustc-link-arg-bin=balance=--defsym=RAM_SIZE=64K");
     // It has batches in all arithmetics and is never flashed.
-    println!("cargo:rustc-link-arg-bin=no_panic=--defsym=FLASH_SIZE=1M");
+    println!("cargo:rustc-link-arg-bin=no_panic=--defsym=FLASH_SIZE=2M");
     Ok(())
 }
