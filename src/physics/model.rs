@@ -250,7 +250,6 @@ for_f32_and_f64! {
             const DEFAULT: Params<Self> = Params::<S>::ACROBOT;
             const SWINGUP: Params<Self> = Params::<S>::CAPSULES;
 
-            #[inline(never)] // saves flash
             fn check(params: &Params<Self>, has_friction: bool) -> Result<(), Error> {
                 params.check(has_friction)
             }

@@ -151,9 +151,10 @@ impl Regression {
         });
         let sums = from_fn(|i| if is_free[i] { products[i][N] * scales[i] } else { 0.0 });
         let mut scaled = [[0.0; N]; N];
-        for (i, row) in scaled.iter_mut().enumerate() {
-            *row = from_fn(|j| match is_free[i] && is_free[j] {
-                true => products[i][j] * scales[i] * scales[j],
+        let rows = scaled.iter_mut().zip(products).zip(scales).zip(is_free);
+        for (i, (((row, products), scale), is_row_free)) in rows.enumerate() {
+            *row = from_fn(|j| match is_row_free && is_free[j] {
+                true => products[j] * scale * scales[j],
                 false => f64::from(u8::from(i == j)),
             });
         }
