@@ -278,7 +278,9 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         let (dt, [zero1, zero2]) = (params.dt, &mut zeros);
         let mut values = estimated(params.numbers_mut(), [zero1, zero2, &mut factor]);
         angles.into_iter().enumerate().for_each(|(i, angle)| {
-            let error = wrap(angle - *values[ZEROS[i]] - y[i]);
+            // Not by indices: Rust 1.89 would check them at opt-level z.
+            let Some(own) = ZEROS.get(i).and_then(|place| values.get(*place)) else { return };
+            let error = wrap(angle - **own - y[i]);
             let square = error * error;
             let (mut with_zero, mut of_zero) = self.of_zero(i);
             // The variance of the torque follows the errors.
