@@ -74,8 +74,9 @@ fn what_is_wrong_with_a_recording_is_named() {
     assert!(found.delay < 0.001 && found.prediction_error < 0.02, "{found:?}");
 
     let [unexplained, wrong] = ["unexplained torque must be at most 3 %", "must be 1"];
+    let mass = "mass1 + mass2 must be from 1/30 to 30 times that of the given ones (are torques in";
     let turned = |angle: f64| angle - (angle / TAU).round() * TAU;
-    let cases: [(&str, Change); 10] = [
+    let cases: [(&str, Change); 12] = [
         (&format!("sign of angle1 {wrong} (counterclockwise), got -1"), &|x| x.angles[0] *= -1.0),
         (&format!("sign of angle2 {wrong} (counterclockwise), got -1"), &|x| x.angles[1] *= -1.0),
         (&format!("sign of torque {wrong} (θ2 grows), got -1"), &|x| x.torques[1] *= -1.0),
@@ -87,6 +88,8 @@ fn what_is_wrong_with_a_recording_is_named() {
         (unexplained, &|x| x.angles = x.angles.map(turned)),
         (unexplained, &|x| x.angles.swap(0, 1)),
         (unexplained, &|x| x.torques = [0.0; 2]),
+        (mass, &|x| x.torques[1] *= 1e3),
+        (mass, &|x| x.torques[1] /= 100.0),
         ("mass22 must be determined by recordings in which both", &|x| x.angles[1] = 0.1),
     ];
     for (expected, change) in cases {
@@ -106,8 +109,14 @@ fn what_is_wrong_with_a_recording_is_named() {
     let early = recording.iter().skip(10).zip(&recording);
     let early = early.map(|(sample, before)| Sample { torques: before.torques, ..*sample });
     let lost = [&recording[..1000], &recording[1100..]].concat();
+    let mut rng = Pcg64::new(1);
+    let missing = "lost samples must be at most 0.5 (both angles turn twice as far as before and";
+    let mut often_lost =
+        |part| recording.iter().copied().filter(|_| uniform(&mut rng, 0.0, 1.0) >= part).collect();
     let rejected = [
         (lost, unexplained),
+        (often_lost(0.01), missing),
+        (often_lost(0.05), missing),
         (late(55), "delay must be below √((length1 + center_of_mass2) / gravity) / 2, in s"),
         (late(80), unexplained),
         (

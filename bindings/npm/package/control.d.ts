@@ -380,7 +380,8 @@ export interface Calibration {
 
 /**
  * The zeros of both encoders, the delay and the parameters of a machine whose lengths and `dt` are
- * given. Throws if the recording has a wrong sign, or does not determine them.
+ * given. Throws if the recording has a wrong sign, lost samples or torques in another unit, or does
+ * not determine them.
  */
 export function calibrate(
   recording: Readonly<Recording>, params: Readonly<Partial<Params>>,

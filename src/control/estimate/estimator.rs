@@ -7,6 +7,8 @@
 //! Constants have the machine's own units or none. Those that count measurements are of statistics,
 //! which need a number of samples and not a time.
 
+use core::array::from_fn;
+
 use super::noise::{Given, Noise};
 use super::parameter_std::{
     FRICTION, PARAMETERS, Parameter, ParameterStd, ROTOR, ZEROS, estimated,
@@ -102,7 +104,7 @@ impl<A: Arithmetic> Estimator<A> {
     ///
     /// The errors of [`Pendulum::new`], and a [noise](Noise) is out of its range.
     pub fn new(params: Params<A::Scalar>, noise: Noise<A::Scalar>) -> Result<Self, Error> {
-        Self::build(params, noise, [])
+        Self::build(Pendulum::new(params, State::HANGING)?, noise, [])
     }
 }
 
@@ -118,7 +120,7 @@ impl<A: Arithmetic> ParameterEstimator<A> {
         std: ParameterStd<A::Scalar>,
         noise: Noise<A::Scalar>,
     ) -> Result<Self, Error> {
-        Self::with_std(params, std, noise)
+        Self::with_std(Pendulum::new(params, State::HANGING)?, std, noise)
     }
 }
 
@@ -126,14 +128,14 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     /// An estimator of the first `K` parameters.
     #[expect(clippy::indexing_slicing, reason = "i is below K, which is at most PARAMETERS")]
     pub(in crate::control) fn with_std(
-        params: Params<A::Scalar>,
+        model: Pendulum<A>,
         std: ParameterStd<A::Scalar>,
         noise: Noise<A::Scalar>,
     ) -> Result<Self, Error> {
         const { assert!(K <= PARAMETERS) };
         let (std, zero, one) = (std.numbers(), A::Scalar::ZERO, A::Scalar::ONE);
         let instruments = [("zero1", zero), ("zero2", zero), ("torque_factor", one)];
-        let given = estimated(params.numbers(), instruments);
+        let given = estimated(model.params().numbers(), instruments);
         let units = ["rad", "rad", "of the torque"].map(|unit| ("", unit, Range::AtLeastZero));
         let units = estimated(FIELDS, units);
         let mut parameters = [Parameter::NONE; K];
@@ -152,15 +154,14 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
             let limits = [if is_negative { zero } else { given - most }, given + most];
             *parameter = Parameter { deviation, limits, ..Parameter::NONE };
         }
-        Self::build(params, noise, parameters)
+        Self::build(model, noise, parameters)
     }
 
     fn build(
-        params: Params<A::Scalar>,
+        model: Pendulum<A>,
         noise: Noise<A::Scalar>,
         parameters: [Parameter<A::Scalar, K>; K],
     ) -> Result<Self, Error> {
-        let model = Pendulum::new(params, State::HANGING)?;
         let mut given = Given::new(model.params(), noise)?;
         let Params { coulomb1, coulomb2, .. } = *model.params();
         let doubts = parameters.iter().enumerate().filter(|(i, _)| FRICTION.contains(i));
@@ -232,7 +233,11 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     #[expect(clippy::indexing_slicing, reason = "i is below K")]
     fn begin(&mut self, state: State<A::Scalar>) -> Option<Matrix<A::Scalar>> {
         for (i, parameter) in self.parameters.iter_mut().enumerate() {
-            parameter.with_state = [A::Scalar::ZERO; 4];
+            let deviation = parameter.deviation;
+            parameter.with_state = from_fn(|angle| match ZEROS.get(angle) == Some(&i) {
+                true => -deviation,
+                false => A::Scalar::ZERO,
+            });
             parameter.with_params = [A::Scalar::ZERO; K];
             parameter.with_params[i] = A::Scalar::ONE;
         }
@@ -240,16 +245,10 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         self.torque = limits[1];
         self.model.set_state(state).ok()?;
         // An angle is as wrong as the zero that was taken off.
-        let mut of_angles = [of_angle; 2];
-        for ((i, place), variance) in ZEROS.into_iter().enumerate().zip(&mut of_angles) {
-            let Some(Parameter { deviation, with_state, .. }) = self.parameters.get_mut(place)
-            else {
-                break;
-            };
-            with_state[i] = -*deviation;
-            *variance = of_angle + *deviation * *deviation;
-        }
-        let [of_angle1, of_angle2] = of_angles;
+        let [of_angle1, of_angle2] = ZEROS.map(|place| {
+            let zero = self.parameters.get(place).map_or(A::Scalar::ZERO, |own| own.deviation);
+            of_angle + zero * zero
+        });
         Some(spread([of_angle1, of_angle2, of_velocity, of_velocity]))
     }
 
@@ -279,7 +278,9 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         let (dt, [zero1, zero2]) = (params.dt, &mut zeros);
         let mut values = estimated(params.numbers_mut(), [zero1, zero2, &mut factor]);
         angles.into_iter().enumerate().for_each(|(i, angle)| {
-            let error = wrap(angle - *values[ZEROS[i]] - y[i]);
+            // Not by indices: Rust 1.89 would check them at opt-level z.
+            let Some(own) = ZEROS.get(i).and_then(|place| values.get(*place)) else { return };
+            let error = wrap(angle - **own - y[i]);
             let square = error * error;
             let (mut with_zero, mut of_zero) = self.of_zero(i);
             // The variance of the torque follows the errors.

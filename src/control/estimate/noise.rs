@@ -73,6 +73,7 @@ impl<S: Real> Given<S> {
         if !(angle > 0.0 && angle <= 2.0) {
             return out_of_range("angle_std", angle, "rad", "above 0 and at most 2");
         }
+        let Units { time, .. } = Units::new(params, noise.torque_std);
         let params: Params<f64> = params.cast();
         // How much a step changes θ̇2, times dt: most where the elbow is straight or folded.
         let [link1, tip, link2, coupling] = params.inertias();
@@ -93,14 +94,13 @@ impl<S: Real> Given<S> {
         // With a larger variance of the torque, rounding would hide a measured angle, or
         // a predicted angle could be any of the circle.
         let most = (of_angle / rounding).min(ON_THE_CIRCLE) / (change * change);
-        let Units { time, .. } = Units::new(&params, torque);
         let times = params.dt / time;
-        let square = |x: f64| S::from_f64(x * x);
+        let variance = |std: f64, times| S::from_f64(std * std * times);
         Ok(Self {
             of_angle: S::from_f64(of_angle),
-            of_velocity: square(AT_FIRST / time),
-            in_velocity: square(IN_A_TIME / time * Real::sqrt(times)),
-            in_parameter: square(DRIFT * Real::sqrt(times)),
+            of_velocity: variance(AT_FIRST / time, 1.0),
+            in_velocity: variance(IN_A_TIME / time, times),
+            in_parameter: variance(DRIFT, times),
             torque: noise.torque_std,
             slow: S::from_f64(SLOW / time),
             limits: OF_TORQUE.map(|x| S::from_f64(x.min(most))),

@@ -16,7 +16,7 @@ const IN_A_STEP: f64 = 1e-6;
 
 impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
     /// The covariances after a step to the state `next`.
-    #[expect(clippy::indexing_slicing, reason = "i is below K or 4")]
+    #[expect(clippy::indexing_slicing, reason = "i is below 4")]
     pub(super) fn predicted(
         &mut self,
         mut of_state: Matrix<A::Scalar>,
@@ -51,7 +51,9 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
             parameter.with_state = plus_scaled(moved, one, change);
             // Its transpose follows when the matrix becomes symmetric.
             add_outer(&mut of_state, one + one, slope, &plus_scaled(moved, half, change));
-            parameter.with_params[i] = parameter.with_params[i] + self.given.in_parameter;
+            if let Some(own) = parameter.with_params.get_mut(i) {
+                *own = *own + self.given.in_parameter;
+            }
         }
         let b = apply(&lasting, &b).map(|x| x * self.given.torque);
         add_outer(&mut of_state, self.torque, &b, &b);

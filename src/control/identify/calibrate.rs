@@ -26,6 +26,10 @@ const UNEXPLAINED: f64 = 0.03;
 const CERTAIN: f64 = 0.01;
 /// How large a standard error may be, divided by its number: errors are up to 5 times as large.
 const UNKNOWN: f64 = 0.03;
+/// How many samples may be lost: with 0.5 % masses are up to 4 % wrong.
+const LOST: f64 = 0.005;
+/// In another unit, such as mN m or N cm, torques make masses at least 100 times too large.
+const OTHER_UNIT: f64 = 30.0;
 
 /// What [`calibrate`] finds.
 #[derive(Clone, Copy, Debug)]
@@ -75,10 +79,12 @@ pub struct Calibration {
 ///
 /// # Errors
 ///
-/// The errors of [`Regression::add`] and of [`Fit::params`]. More than 3 % of the torques is
-/// unexplained, or a number is not known within 3 %. An angle or the torque has the wrong sign, or
-/// the second angle is not that from link 1. A zero or the delay is at the end of its range, or
-/// torques act before they are recorded.
+/// The errors of [`Regression::add`] and of [`Fit::params`]. More than 0.5 % of the samples are
+/// lost, more than 3 % of the torques is unexplained, or a number is not known within 3 %. An angle
+/// or the torque has the wrong sign, or the second angle is not that from link 1. A zero or the
+/// delay is at the end of its range, or torques act before they are recorded. Both links together
+/// have more than 30 times the given masses or less than 1/30 of them, because torques are in
+/// another unit: a smaller factor in the torques cannot be told from one in the masses.
 pub fn calibrate(recording: &[Sample], given: Params) -> Result<Calibration, Error> {
     let (mut correction, mut least) = (Correction::NONE, f64::INFINITY);
     for theta2 in FRAMES {
@@ -95,13 +101,25 @@ pub fn calibrate(recording: &[Sample], given: Params) -> Result<Calibration, Err
     if fit.rank_deficiency > 0 {
         fit.params(given)?;
     }
+    let lost = lost(recording);
+    if lost > LOST {
+        let rule = "at most 0.5 (both angles turn twice as far as before and after), in";
+        return out_of_range("lost samples", 100.0 * lost, "%", rule);
+    }
     check(&correction, least, &regression.fit_free([true; _]), given.dt)?;
     let (first, last) =
         recording.split_at_checked(recording.len() / 3 * 2).unwrap_or((recording, &[]));
     let of_first = regress(first, &given, &correction)?.fit().params(given)?;
     let ahead = in_steps(&given, AHEAD);
+    let params = fit.params(given)?;
+    let mass = params.mass1 + params.mass2;
+    let ratio = mass / (given.mass1 + given.mass2);
+    if !(1.0 / OTHER_UNIT..=OTHER_UNIT).contains(&ratio) {
+        let rule = "from 1/30 to 30 times that of the given ones (are torques in N m?), in";
+        return out_of_range("mass1 + mass2", mass, "kg", rule);
+    }
     Ok(Calibration {
-        params: fit.params(given)?,
+        params,
         fit,
         zeros: correction.zeros,
         delay: correction.delay.max(0.0) * given.dt,
@@ -161,10 +179,47 @@ fn search(
     Ok((correction(at), least))
 }
 
+/// The part of the samples that is lost: both angles turn twice as far as before and after.
+fn lost(samples: &[Sample]) -> f64 {
+    // How far an angle turns in the steps before and after, in the mean, and how much farther in
+    // the one between.
+    let step = |[a, b, c, d]: [f64; 4]| {
+        let mean = (b - a + d - c) / 2.0;
+        [mean, c - b - mean]
+    };
+    let steps = samples.windows(4).filter_map(|window| {
+        let [[a1, a2], [b1, b2], [c1, c2], [d1, d2]] =
+            <[Sample; 4]>::try_from(window).ok()?.map(|sample| sample.angles);
+        Some([step([a1, b1, c1, d1]), step([a2, b2, c2, d2])])
+    });
+    let sums = steps.clone().fold([0.0; 2], |[sum1, sum2], [[_, farther1], [_, farther2]]| {
+        [sum1 + farther1.abs(), sum2 + farther2.abs()]
+    });
+    let usual = sums.map(|sum: f64| sum / samples.len() as f64);
+    let (mut fast, mut doubled) = (0.0, 0.0);
+    for both in steps {
+        // The others are noise: encoders count whole numbers.
+        if both.iter().zip(usual).all(|([mean, _], usual)| mean.abs() > 4.0 * usual) {
+            let is_double = |[mean, farther]: [f64; 2]| (farther / mean - 1.0).abs() < 0.25;
+            fast += 1.0;
+            doubled += if both.into_iter().all(is_double) { 1.0 } else { 0.0 };
+        }
+    }
+    if fast > 0.0 { doubled / fast } else { 0.0 }
+}
+
+fn out_of_range<T>(
+    name: &'static str,
+    value: f64,
+    unit: &'static str,
+    rule: &'static str,
+) -> Result<T, Error> {
+    Err(Error::OutOfRange { name, value, unit, rule })
+}
+
 /// Checks what a search found. The signs need a fit whose friction can be below 0: with the wrong
 /// sign of the torque all numbers are.
 fn check(found: &Correction, unexplained: f64, fit: &Fit, dt: f64) -> Result<(), Error> {
-    let out_of_range = |name, value, unit, rule| Err(Error::OutOfRange { name, value, unit, rule });
     if unexplained > UNEXPLAINED {
         return out_of_range("unexplained torque", 100.0 * unexplained, "%", "at most 3");
     }

@@ -150,12 +150,14 @@ impl Regression {
             _ => 1.0,
         });
         let sums = from_fn(|i| if is_free[i] { products[i][N] * scales[i] } else { 0.0 });
-        let mut scaled: [[f64; N]; N] = from_fn(|i| {
-            from_fn(|j| match is_free[i] && is_free[j] {
-                true => products[i][j] * scales[i] * scales[j],
+        let mut scaled = [[0.0; N]; N];
+        let rows = scaled.iter_mut().zip(products).zip(scales).zip(is_free);
+        for (i, (((row, products), scale), is_row_free)) in rows.enumerate() {
+            *row = from_fn(|j| match is_row_free && is_free[j] {
+                true => products[j] * scale * scales[j],
                 false => f64::from(u8::from(i == j)),
-            })
-        });
+            });
+        }
         let vectors = diagonalize(&mut scaled);
         let (mut values, mut inverse, mut rank_deficiency) = ([0.0; N], [0.0; N], 0);
         let (mut weakest, mut least) = ([0.0; N], f64::INFINITY);

@@ -2,13 +2,13 @@
 
 use core::f32::consts::TAU;
 
-use super::delay::{Arithmetic, Delay};
+use super::delay::{Arithmetic, Delay, model};
 use crate::control::estimate::{KalmanFilter, Noise, ParameterStd, USUAL};
 use crate::control::plan::Knot;
 use crate::control::units::Units;
 use crate::error::{Error, Range};
 use crate::math::matrix::check_finite;
-use crate::physics::{Params, State, saturate};
+use crate::physics::{Params, Pendulum, State, saturate};
 
 /// Standard deviations: of an angle, in counts, and of the torque, as a part of the largest.
 const ANGLE: f32 = 0.29;
@@ -92,10 +92,10 @@ impl Settings {
         }
     }
 
-    /// Checks all settings. Returns the torques on their way: none.
-    pub(super) fn check(&self) -> Result<Delay, Error> {
+    /// Checks all settings. Returns the machine, and the torques on their way: none.
+    pub(super) fn check(&self) -> Result<(Pendulum<Arithmetic>, Delay), Error> {
         let [counts1, counts2] = self.counts.map(f64::from);
-        self.params.validate()?;
+        let model = model(self.params, State::HANGING)?;
         for (name, value, unit) in [
             ("limit", self.limit.into(), "N m"),
             ("counts", counts1, "for a turn"),
@@ -108,7 +108,7 @@ impl Settings {
             let (value, unit) = (value.into(), "s");
             return Err(Error::OutOfRange { name, value, unit, rule: "above 0" });
         }
-        Delay::new(self.delay, self.params.dt, self.ticks())
+        Ok((model, Delay::new(self.delay, self.params.dt, self.ticks())?))
     }
 
     /// Ticks from a decision to the next.
@@ -159,13 +159,13 @@ impl<const N: usize> Controller<N> {
     ///
     /// A setting is out of range.
     pub fn new(settings: Settings) -> Result<Self, Error> {
-        let delay = settings.check()?;
+        let (model, delay) = settings.check()?;
         let [counts1, counts2] = settings.counts;
         let angle = ANGLE * TAU / counts1.min(counts2) as f32;
         let noise = Noise { angle_std: angle, torque_std: TORQUE * settings.limit };
         Ok(Self {
             settings,
-            estimator: KalmanFilter::with_std(settings.params, settings.doubt(), noise)?,
+            estimator: KalmanFilter::with_std(model, settings.doubt(), noise)?,
             plan: [Knot::EMPTY; N],
             next: 0,
             last: Knot::EMPTY,

@@ -7,6 +7,11 @@ use crate::physics::{Params, Pendulum, State};
 /// The arithmetic of the estimator and of plans.
 pub(super) type Arithmetic = Damped<Fast>;
 
+/// A machine in a state. What is generic over the length of plans would compile this again.
+pub(super) fn model(params: Params<f32>, state: State<f32>) -> Result<Pendulum<Arithmetic>, Error> {
+    Pendulum::new(params, state)
+}
+
 /// The decisions whose torques may still wait, and the one that acts.
 const SENT: usize = 16;
 
@@ -69,7 +74,7 @@ impl Delay {
                 continue;
             }
             let params = Params { dt: ticks * params.dt, ..*params };
-            let mut model = Pendulum::<Arithmetic>::new(params, state)?;
+            let mut model = model(params, state)?;
             for torque in torques {
                 model.step(factor * torque)?;
             }

@@ -3,12 +3,12 @@
 use core::iter::{once, repeat};
 
 use super::controller::{Controller, Settings};
-use super::delay::Arithmetic;
+use super::delay::{Arithmetic, model};
 use crate::control::plan::{Cost, Knot, Planner, Problem};
 use crate::control::units::Units;
 use crate::error::Error;
 use crate::math::Real;
-use crate::physics::{Params, Pendulum, State, saturate};
+use crate::physics::{Params, State, saturate};
 
 /// The part of the motor's torque that plans use. The rest corrects deviations.
 const PLANNED: f32 = 0.9;
@@ -165,7 +165,7 @@ impl<const N: usize> Replanner<N> {
         let steps = once(&controller.last).chain(rest);
         let held = rest.last().unwrap_or(&controller.last);
         let Machine { params, limit } = self.machine;
-        let mut model = Pendulum::<Arithmetic>::new(params, controller.state)?;
+        let mut model = model(params, controller.state)?;
         let ahead = self.ahead as usize;
         for step in steps.clone().chain(repeat(held)).take(ahead) {
             model.step(saturate(step.follow(model.state()), limit))?;

@@ -161,7 +161,8 @@ def calibrate(angles: ArrayLike, torques: ArrayLike, env: Env) -> Calibration:
     """Calibrate a machine from one recording in which both links move, for ten seconds or so.
 
     As :func:`identify`, for angles whose zeros are unknown, up to 0.5 rad, and a torque that acts
-    late. An error says which angle or torque has the wrong sign, and what is not determined.
+    late. An error says which angle or torque has the wrong sign, that samples are lost, that the
+    torques are in another unit, and what is not determined.
     """
     found, zeros, *numbers = _native.calibrate(acrobot_of(env)._native, _rows(angles, torques))
     return Calibration(_fit(*found), tuple(zeros), *numbers)

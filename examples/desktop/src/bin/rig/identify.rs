@@ -37,7 +37,12 @@ pub fn identify(drawn: Rig, recording: &Path, out: &Path) -> anyhow::Result<()> 
         angles: [count1 * turns[0], count2 * turns[1]],
         torques: [0.0, torque],
     };
-    let samples: Vec<Sample> = read(recording)?.into_iter().map(sample).collect();
+    let rows = read(recording)?;
+    let limit = drawn.limit;
+    if let Some([.., torque]) = rows.iter().find(|[.., torque]| torque.abs() as f32 > limit) {
+        bail!("torques must be in N m and at most the limit of {limit}, got {torque}");
+    }
+    let samples: Vec<Sample> = rows.into_iter().map(sample).collect();
     let Calibration { params, fit, zeros, delay, prediction_error } =
         calibrate(&samples, drawn.params()?)
             .with_context(|| format!("{} identifies no machine", recording.display()))?;
