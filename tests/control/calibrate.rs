@@ -60,22 +60,35 @@ fn a_recording_tells_the_zeros_the_delay_and_the_machine() {
 
 type Change<'a> = &'a dyn Fn(&mut Sample);
 
-/// On RealAIGym's machine, in 5 s.
+/// On a recording of RealAIGym's machine, or on as many as the variable `MACHINES` says, of 5 s.
 #[test]
 fn what_is_wrong_with_a_recording_is_named() {
+    let machines = env::var("MACHINES").map_or(1, |count| count.parse().unwrap());
+    let errors: Vec<_> = (7..7 + machines).map(named).collect();
+    let medians = [0, 1, 2].map(|i| {
+        let mut errors: Vec<f64> = errors.iter().map(|errors| errors[i]).collect();
+        errors.sort_by(f64::total_cmp);
+        errors[errors.len() / 2]
+    });
+    println!("prediction errors {medians:.3?} rad");
+}
+
+/// Returns the prediction errors of a recording, and of the same if each thousandth and each 300th
+/// line is lost.
+fn named(seed: u64) -> [f64; 3] {
     let hardware = Hardware { zeros: [0.05, -0.03], ..Hardware::realaigym() };
-    let recording = record(&hardware, 5.0, 7);
+    let recording = record(&hardware, 5.0, seed);
     let calibrated = |change: Change| {
         let mut recording = recording.clone();
         recording.iter_mut().for_each(change);
         calibrate(&recording, drawn(&hardware))
     };
     let found = calibrated(&|_| ()).unwrap();
-    assert!(found.delay < 0.001 && found.prediction_error < 0.02, "{found:?}");
+    assert!(found.delay < 0.001 && found.prediction_error < 0.06, "{seed}: {found:?}");
 
     let [unexplained, wrong] = ["unexplained torque must be at most 3 %", "must be 1"];
     let turned = |angle: f64| angle - (angle / TAU).round() * TAU;
-    let cases: [(&str, Change); 10] = [
+    let cases: [(&str, Change); 13] = [
         (&format!("sign of angle1 {wrong} (counterclockwise), got -1"), &|x| x.angles[0] *= -1.0),
         (&format!("sign of angle2 {wrong} (counterclockwise), got -1"), &|x| x.angles[1] *= -1.0),
         (&format!("sign of torque {wrong} (θ2 grows), got -1"), &|x| x.torques[1] *= -1.0),
@@ -84,6 +97,9 @@ fn what_is_wrong_with_a_recording_is_named() {
         }),
         ("zero1 must be between -0.5 and 0.5 rad, got 0.5", &|x| x.angles[0] += 0.455),
         ("length1 must be finite and above 0 m", &|x| x.angles[0] += PI),
+        ("mass2 must be finite and above 0 kg", &|x| x.angles[1] += PI),
+        (unexplained, &|x| x.angles[0] += 0.6),
+        (unexplained, &|x| x.angles = x.angles.map(|angle| 1.02 * angle)),
         (unexplained, &|x| x.angles = x.angles.map(turned)),
         (unexplained, &|x| x.angles.swap(0, 1)),
         (unexplained, &|x| x.torques = [0.0; 2]),
@@ -91,7 +107,7 @@ fn what_is_wrong_with_a_recording_is_named() {
     ];
     for (expected, change) in cases {
         let error = calibrated(change).unwrap_err().to_string();
-        assert!(error.starts_with(expected), "{expected}: {error}");
+        assert!(error.starts_with(expected), "{seed}: {expected}: {error}");
     }
 
     // Torques late by so many samples.
@@ -106,8 +122,13 @@ fn what_is_wrong_with_a_recording_is_named() {
     let early = recording.iter().skip(10).zip(&recording);
     let early = early.map(|(sample, before)| Sample { torques: before.torques, ..*sample });
     let lost = [&recording[..1000], &recording[1100..]].concat();
+    let mut sticks = recording.clone();
+    let half = sticks.len() / 2;
+    let stuck = sticks[half].angles[1];
+    sticks[half..].iter_mut().for_each(|sample| sample.angles[1] = stuck);
     let rejected = [
         (lost, unexplained),
+        (sticks, unexplained),
         (late(55), "delay must be below √((length1 + center_of_mass2) / gravity) / 2, in s"),
         (late(80), unexplained),
         (
@@ -119,6 +140,11 @@ fn what_is_wrong_with_a_recording_is_named() {
     ];
     for (recording, expected) in rejected {
         let error = calibrate(&recording, drawn(&hardware)).unwrap_err().to_string();
-        assert!(error.starts_with(expected), "{expected}: {error}");
+        assert!(error.starts_with(expected), "{seed}: {expected}: {error}");
     }
+    [usize::MAX, 1000, 300].map(|each| {
+        let left = recording.iter().enumerate().filter(|(i, _)| (i + 1) % each != 0);
+        let left: Vec<_> = left.map(|(_, sample)| *sample).collect();
+        calibrate(&left, drawn(&hardware)).unwrap().prediction_error
+    })
 }
