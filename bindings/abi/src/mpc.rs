@@ -53,7 +53,7 @@ impl TryFrom<acrobot_settings_t> for Settings {
 }
 
 /// Bytes of an acrobot_controller_t.
-pub const ACROBOT_CONTROLLER_SIZE: usize = 5776;
+pub const ACROBOT_CONTROLLER_SIZE: usize = 5808;
 
 /// What a timer's interrupt does: it estimates the state, and follows a plan of 100 decisions. Call
 /// acrobot_controller_init first. You may copy and move it.

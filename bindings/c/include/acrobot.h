@@ -118,7 +118,7 @@
 #define ACROBOT_REGRESSION_SIZE 992
 
 // Bytes of an acrobot_controller_t.
-#define ACROBOT_CONTROLLER_SIZE 5776
+#define ACROBOT_CONTROLLER_SIZE 5808
 
 // Bytes of an acrobot_replanner_t.
 #define ACROBOT_REPLANNER_SIZE 5392
