@@ -118,6 +118,12 @@ fn an_encoder_that_does_not_count_while_the_other_joint_turns_is_an_error() {
         let misses = controller.report().misses;
         assert!(misses > 8.0, "{misses}");
     }
+    // A count may begin again after a turn.
+    let mut controller = Controller::<100>::new(settings).unwrap();
+    for count2 in [2047, -2048, 2047] {
+        controller.tick([0, count2]).unwrap();
+    }
+    assert!(controller.report().misses < 1.0);
 }
 
 /// Plans come half a second late.

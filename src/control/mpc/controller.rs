@@ -8,7 +8,7 @@ use crate::control::plan::Knot;
 use crate::control::units::Units;
 use crate::error::{Error, Range};
 use crate::math::matrix::check_finite;
-use crate::physics::{Params, State, saturate};
+use crate::physics::{Params, State, saturate, wrap};
 
 /// Standard deviations: of an angle, in counts, and of the torque, as a part of the largest.
 const ANGLE: f32 = 0.29;
@@ -207,8 +207,9 @@ impl<const N: usize> Controller<N> {
         if at2[1] != count2 {
             *at2 = counts;
         }
-        let turned1 = angle(count1.wrapping_sub(at2[0]), turn1).abs();
-        let turned2 = angle(count2.wrapping_sub(at1[1]), turn2).abs();
+        // Counts may begin again after a turn.
+        let turned1 = wrap(angle(count1.wrapping_sub(at2[0]), turn1)).abs();
+        let turned2 = wrap(angle(count2.wrapping_sub(at1[1]), turn2)).abs();
         self.misses = self.estimator.misses() + STILL * turned1.max(turned2);
         if self.misses > MISSES {
             let (name, value, unit) = ("misses", self.misses.into(), "of the last hundred ticks");
