@@ -60,23 +60,36 @@ fn a_recording_tells_the_zeros_the_delay_and_the_machine() {
 
 type Change<'a> = &'a dyn Fn(&mut Sample);
 
-/// On RealAIGym's machine, in 5 s.
+/// On a recording of RealAIGym's machine, or on as many as the variable `MACHINES` says, of 10 s.
 #[test]
 fn what_is_wrong_with_a_recording_is_named() {
+    let machines = env::var("MACHINES").map_or(1, |count| count.parse().unwrap());
+    let errors: Vec<_> = (0..machines).map(named).collect();
+    let medians = [0, 1, 2].map(|i| {
+        let mut errors: Vec<f64> = errors.iter().map(|errors| errors[i]).collect();
+        errors.sort_by(f64::total_cmp);
+        errors[errors.len() / 2]
+    });
+    println!("prediction errors {medians:.3?} rad");
+}
+
+/// Returns the prediction errors of a recording, and of the same if each thousandth and each 300th
+/// line is lost.
+fn named(seed: u64) -> [f64; 3] {
     let hardware = Hardware { zeros: [0.05, -0.03], ..Hardware::realaigym() };
-    let recording = record(&hardware, 5.0, 7);
+    let recording = record(&hardware, 10.0, seed);
     let calibrated = |change: Change| {
         let mut recording = recording.clone();
         recording.iter_mut().for_each(change);
         calibrate(&recording, drawn(&hardware))
     };
     let found = calibrated(&|_| ()).unwrap();
-    assert!(found.delay < 0.001 && found.prediction_error < 0.02, "{found:?}");
+    assert!(found.delay < 0.001 && found.prediction_error < 0.06, "{seed}: {found:?}");
 
     let [unexplained, wrong] = ["unexplained torque must be at most 3 %", "must be 1"];
     let mass = "mass1 + mass2 must be from 1/30 to 30 times that of the given ones (are torques in";
     let turned = |angle: f64| angle - (angle / TAU).round() * TAU;
-    let cases: [(&str, Change); 12] = [
+    let cases: [(&str, Change); 15] = [
         (&format!("sign of angle1 {wrong} (counterclockwise), got -1"), &|x| x.angles[0] *= -1.0),
         (&format!("sign of angle2 {wrong} (counterclockwise), got -1"), &|x| x.angles[1] *= -1.0),
         (&format!("sign of torque {wrong} (θ2 grows), got -1"), &|x| x.torques[1] *= -1.0),
@@ -85,16 +98,19 @@ fn what_is_wrong_with_a_recording_is_named() {
         }),
         ("zero1 must be between -0.5 and 0.5 rad, got 0.5", &|x| x.angles[0] += 0.455),
         ("length1 must be finite and above 0 m", &|x| x.angles[0] += PI),
+        ("mass2 must be finite and above 0 kg", &|x| x.angles[1] += PI),
+        (unexplained, &|x| x.angles[0] += 0.6),
+        (unexplained, &|x| x.angles = x.angles.map(|angle| 1.02 * angle)),
         (unexplained, &|x| x.angles = x.angles.map(turned)),
         (unexplained, &|x| x.angles.swap(0, 1)),
         (unexplained, &|x| x.torques = [0.0; 2]),
         (mass, &|x| x.torques[1] *= 1e3),
         (mass, &|x| x.torques[1] /= 100.0),
-        ("mass22 must be determined by recordings in which both", &|x| x.angles[1] = 0.1),
+        (" must be determined by recordings in which both", &|x| x.angles[1] = 0.1),
     ];
     for (expected, change) in cases {
         let error = calibrated(change).unwrap_err().to_string();
-        assert!(error.starts_with(expected), "{expected}: {error}");
+        assert!(error.contains(expected), "{seed}: {expected}: {error}");
     }
 
     // Torques late by so many samples.
@@ -113,10 +129,15 @@ fn what_is_wrong_with_a_recording_is_named() {
     let missing = "lost samples must be at most 0.5 (both angles turn twice as far as before and";
     let mut often_lost =
         |part| recording.iter().copied().filter(|_| uniform(&mut rng, 0.0, 1.0) >= part).collect();
+    let mut sticks = recording.clone();
+    let half = sticks.len() / 2;
+    let stuck = sticks[half].angles[1];
+    sticks[half..].iter_mut().for_each(|sample| sample.angles[1] = stuck);
     let rejected = [
         (lost, unexplained),
         (often_lost(0.01), missing),
         (often_lost(0.05), missing),
+        (sticks, unexplained),
         (late(55), "delay must be below √((length1 + center_of_mass2) / gravity) / 2, in s"),
         (late(80), unexplained),
         (
@@ -128,6 +149,11 @@ fn what_is_wrong_with_a_recording_is_named() {
     ];
     for (recording, expected) in rejected {
         let error = calibrate(&recording, drawn(&hardware)).unwrap_err().to_string();
-        assert!(error.starts_with(expected), "{expected}: {error}");
+        assert!(error.starts_with(expected), "{seed}: {expected}: {error}");
     }
+    [usize::MAX, 1000, 300].map(|each| {
+        let left = recording.iter().enumerate().filter(|(i, _)| (i + 1) % each != 0);
+        let left: Vec<_> = left.map(|(_, sample)| *sample).collect();
+        calibrate(&left, drawn(&hardware)).unwrap().prediction_error
+    })
 }

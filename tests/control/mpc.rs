@@ -1,6 +1,8 @@
 //! Machines swing up and are held, with delays, zeros and parameters that the controller does not
 //! know; a broken encoder is found.
 
+use std::f64::consts::TAU;
+
 use acrobot::Params;
 use acrobot::control::mpc::{Controller, Replanner, Settings};
 use acrobot::numpy::{Pcg64, uniform};
@@ -97,17 +99,31 @@ fn a_broken_encoder_is_an_error() {
         rehearsal.machine.push([0.5, 6.0]);
         rehearsal.run(0.2, 0.1, 0.0).unwrap();
         let last = rehearsal.machine.counts()[broken];
-        let mut controller = rehearsal.controller.clone();
-        let ticks = (0..350).take_while(|_| {
-            let mut counts = rehearsal.machine.counts();
-            counts[broken] = if sticks { last } else { 0 };
-            let torque = controller.tick(counts);
-            rehearsal.machine.step(torque.unwrap_or(0.0));
-            torque.is_ok()
-        });
-        let ticks = ticks.count();
-        assert!(ticks < 350, "after {after} s, encoder {broken}, sticks: {sticks}");
+        rehearsal.stuck[broken] = Some(if sticks { last } else { 0 });
+        let error = rehearsal.run(0.7, 0.1, 0.0);
+        assert!(error.is_err(), "after {after} s, encoder {broken}, sticks: {sticks}");
     }
+}
+
+/// The estimator alone believes in a link that stands, and in torques that hold it.
+#[test]
+fn an_encoder_that_does_not_count_while_the_other_joint_turns_is_an_error() {
+    let settings = known(&Hardware::realaigym());
+    for (first, turn) in [([0, 2000], [0, 1]), ([2000, 0], [1, 0]), ([-7, 2000], [0, -1])] {
+        let mut controller = Controller::<100>::new(settings).unwrap();
+        let at = |tick: i32| [first[0] + turn[0] * 10 * tick, first[1] + turn[1] * 10 * tick];
+        let ticks = (0..200).take_while(|tick| controller.tick(at(*tick)).is_ok()).count() as f64;
+        let turned = 10.0 * ticks / 4096.0 * TAU;
+        assert!((1.0..2.05).contains(&turned), "{first:?}: {turned} rad");
+        let misses = controller.report().misses;
+        assert!(misses > 8.0, "{misses}");
+    }
+    // A count may begin again after a turn.
+    let mut controller = Controller::<100>::new(settings).unwrap();
+    for count2 in [2047, -2048, 2047] {
+        controller.tick([0, count2]).unwrap();
+    }
+    assert!(controller.report().misses < 1.0);
 }
 
 /// Plans come half a second late.

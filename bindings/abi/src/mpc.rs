@@ -36,7 +36,8 @@ pub struct acrobot_report_t {
     /// The torque that is estimated to act, divided by the one that is sent.
     pub torque_factor: f32,
     /// How many of the last hundred ticks have angles that no motion of the machine explains: a few
-    /// after a push. Above 8 a tick is rejected.
+    /// after a push. And 4 for each radian that a joint has turned since the other one's encoder
+    /// counted. Above 8 a tick is rejected.
     pub misses: f32,
     /// The time since the last plan, s. It is 0 before the first one.
     pub plan_age: f32,
@@ -52,7 +53,7 @@ impl TryFrom<acrobot_settings_t> for Settings {
 }
 
 /// Bytes of an acrobot_controller_t.
-pub const ACROBOT_CONTROLLER_SIZE: usize = 5776;
+pub const ACROBOT_CONTROLLER_SIZE: usize = 5808;
 
 /// What a timer's interrupt does: it estimates the state, and follows a plan of 100 decisions. Call
 /// acrobot_controller_init first. You may copy and move it.

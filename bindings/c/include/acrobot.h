@@ -118,7 +118,7 @@
 #define ACROBOT_REGRESSION_SIZE 992
 
 // Bytes of an acrobot_controller_t.
-#define ACROBOT_CONTROLLER_SIZE 5776
+#define ACROBOT_CONTROLLER_SIZE 5808
 
 // Bytes of an acrobot_replanner_t.
 #define ACROBOT_REPLANNER_SIZE 5392
@@ -619,7 +619,8 @@ typedef struct {
   // The torque that is estimated to act, divided by the one that is sent.
   float torque_factor;
   // How many of the last hundred ticks have angles that no motion of the machine explains: a few
-  // after a push. Above 8 a tick is rejected.
+  // after a push. And 4 for each radian that a joint has turned since the other one's encoder
+  // counted. Above 8 a tick is rejected.
   float misses;
   // The time since the last plan, s. It is 0 before the first one.
   float plan_age;

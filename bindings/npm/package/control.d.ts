@@ -420,7 +420,8 @@ export interface Report {
   torqueFactor: number;
   /**
    * How many of the last hundred ticks have angles that no motion of the machine explains: a few
-   * after a push. Above 8 a tick is rejected.
+   * after a push. And 4 for each radian that a joint has turned since the other one's encoder
+   * counted. Above 8 a tick is rejected.
    */
   misses: number;
   /** The time since the last plan, s. It is 0 before the first one. */

@@ -14,7 +14,7 @@ export const KINDS = {
 
 /** Bytes. */
 export const SIZES = {
-  acrobot: 304, actionSpace: 96, controller: 5776, estimator: 304, parameterEstimator: 1344,
+  acrobot: 304, actionSpace: 96, controller: 5808, estimator: 304, parameterEstimator: 1344,
   planner: 752, regression: 992, replanner: 5392, snapshot: 224, swingUp: 496,
 };
 

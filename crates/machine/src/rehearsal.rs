@@ -15,6 +15,8 @@ pub struct Rehearsal {
     pub controller: Controller<100>,
     /// The most misses of its [report](acrobot::control::mpc::Report) so far.
     pub misses: f32,
+    /// What broken encoders count.
+    pub stuck: [Option<i32>; 2],
     replanner: Replanner<100>,
     /// The time of a slice of planning in ticks, and the ticks so far.
     slice: u32,
@@ -31,7 +33,8 @@ impl Rehearsal {
     pub fn new(machine: Machine, settings: Settings, slice: u32) -> Result<Self, Error> {
         let controller = Controller::new(settings)?;
         let replanner = Replanner::new(settings)?;
-        Ok(Self { machine, controller, misses: 0.0, replanner, slice, ticks: 0 })
+        let (misses, stuck) = (0.0, [None; 2]);
+        Ok(Self { machine, controller, misses, stuck, replanner, slice, ticks: 0 })
     }
 
     /// Takes a tick, and returns the torque, N m.
@@ -40,7 +43,10 @@ impl Rehearsal {
     ///
     /// The error of [`Controller::tick`].
     pub fn tick(&mut self) -> Result<f32, Error> {
-        let torque = self.controller.tick(self.machine.counts())?;
+        let [count1, count2] = self.machine.counts();
+        let [stuck1, stuck2] = self.stuck;
+        let counts = [stuck1.unwrap_or(count1), stuck2.unwrap_or(count2)];
+        let torque = self.controller.tick(counts)?;
         self.misses = self.misses.max(self.controller.report().misses);
         if self.ticks.is_multiple_of(self.slice.max(1)) {
             self.replanner.exchange(&mut self.controller);
@@ -49,6 +55,12 @@ impl Rehearsal {
         self.ticks = self.ticks.wrapping_add(1);
         self.machine.step(torque);
         Ok(torque)
+    }
+
+    /// The time of all ticks so far, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        f64::from(self.ticks) * self.machine.hardware().params.dt
     }
 
     /// Takes the ticks of so many seconds. Returns after how many seconds both angles are within

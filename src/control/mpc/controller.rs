@@ -8,7 +8,7 @@ use crate::control::plan::Knot;
 use crate::control::units::Units;
 use crate::error::{Error, Range};
 use crate::math::matrix::check_finite;
-use crate::physics::{Params, Pendulum, State, saturate};
+use crate::physics::{Params, Pendulum, State, saturate, wrap};
 
 /// Standard deviations: of an angle, in counts, and of the torque, as a part of the largest.
 const ANGLE: f32 = 0.29;
@@ -23,6 +23,9 @@ const ZERO: f32 = 0.0175;
 const FACTOR: f32 = 0.1;
 /// Pushes cause fewer misses.
 const MISSES: f32 = 8.0;
+/// So many misses is a radian that a joint turns while the other one's encoder does not count: the
+/// estimator alone believes in a link that sticks, and in a torque that makes it.
+const STILL: f32 = 4.0;
 /// Decisions in the machine's time T, so that a plan of 100 is 4.5 T long.
 const DECISIONS: f32 = 22.0;
 
@@ -64,7 +67,8 @@ pub struct Report {
     /// The torque that is estimated to act, divided by the one that is sent.
     pub torque_factor: f32,
     /// How many of the last hundred ticks have angles that no motion of the machine explains: a few
-    /// after a push.
+    /// after a push. And 4 for each radian that a joint has turned since the other one's encoder
+    /// counted.
     pub misses: f32,
     /// The time since the last plan, s. It is 0 before the first one.
     pub plan_age: f32,
@@ -150,6 +154,9 @@ pub struct Controller<const N: usize> {
     tick: u32,
     torque: f32,
     delay: Delay,
+    /// Both counts when each encoder last counted.
+    counted: Option<[[i32; 2]; 2]>,
+    misses: f32,
 }
 
 impl<const N: usize> Controller<N> {
@@ -176,6 +183,8 @@ impl<const N: usize> Controller<N> {
             tick: 0,
             torque: 0.0,
             delay,
+            counted: None,
+            misses: 0.0,
         })
     }
 
@@ -191,9 +200,19 @@ impl<const N: usize> Controller<N> {
         let angle =
             |count: i32, turn: i32| count.checked_rem(turn).unwrap_or(0) as f32 / turn as f32 * TAU;
         self.estimator.correct([angle(count1, turn1), angle(count2, turn2)])?;
-        let misses = self.estimator.misses();
-        if misses > MISSES {
-            let (name, value, unit) = ("misses", misses.into(), "of the last hundred ticks");
+        let [at1, at2] = self.counted.get_or_insert([counts; 2]);
+        if at1[0] != count1 {
+            *at1 = counts;
+        }
+        if at2[1] != count2 {
+            *at2 = counts;
+        }
+        // Counts may begin again after a turn.
+        let turned1 = wrap(angle(count1.wrapping_sub(at2[0]), turn1)).abs();
+        let turned2 = wrap(angle(count2.wrapping_sub(at1[1]), turn2)).abs();
+        self.misses = self.estimator.misses() + STILL * turned1.max(turned2);
+        if self.misses > MISSES {
+            let (name, value, unit) = ("misses", self.misses.into(), "of the last hundred ticks");
             return Err(Error::OutOfRange { name, value, unit, rule: "at most 8" });
         }
         if self.tick == 0 {
@@ -232,7 +251,7 @@ impl<const N: usize> Controller<N> {
         Report {
             zeros: self.estimator.zeros(),
             torque_factor: self.estimator.torque_factor(),
-            misses: self.estimator.misses(),
+            misses: self.misses,
             plan_age: decisions as f32 * self.ticks as f32 * self.settings.params.dt,
         }
     }

@@ -5,11 +5,12 @@
 //! cargo run --release -p desktop --bin real                            # RealAIGym's machine
 //! cargo run --release -p desktop --bin real -- --first 20              # other seeds
 //! cargo run --release -p desktop --bin real -- mass2=0.8 counts=5000   # another machine
+//! cargo run --release -p desktop --bin real -- --believe mass2=0.5     # measured badly
 //! ```
 //!
 //! docs/real.md has the table that it prints, and explains it.
 
-use acrobot::control::identify::{Calibration, calibrate};
+use acrobot::control::identify::{Calibration, Sample, calibrate};
 use acrobot::control::mpc::Settings;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::{Error, Params};
@@ -43,6 +44,10 @@ struct Options {
     /// delay and lag, s; torque_factor; torque_std, N m
     #[arg(value_name = "NAME=VALUE")]
     numbers: Vec<String>,
+    /// A number that is believed instead: params, limit, counts, delay and lag are. Those of
+    /// recordings follow from the machine, and from counts.
+    #[arg(long, value_name = "NAME=VALUE")]
+    believe: Vec<String>,
 }
 
 /// Changes a number of a machine.
@@ -100,51 +105,72 @@ struct Belief {
     zeros: [f64; 2],
 }
 
-type Model = fn(&Hardware, u64) -> Result<Belief, Error>;
+/// A machine, and what its builder believes of it.
+#[derive(Clone, Copy)]
+struct Known {
+    hardware: Hardware,
+    believed: Hardware,
+}
 
-/// The motion of a machine between pushes: seconds until upright, if it then stays there.
-type Motion = [Option<f64>; PUSHES.len()];
+type Model = fn(&Known, u64) -> Result<Belief, Error>;
 
-fn the_true_one(&Hardware { params, delay, lag, .. }: &Hardware, _: u64) -> Result<Belief, Error> {
+/// The motion of a machine between pushes: seconds until upright, if it then stays there. And the
+/// time and the error that ended it.
+#[derive(Default)]
+struct Motion {
+    upright: [Option<f64>; PUSHES.len()],
+    error: Option<(f64, Error)>,
+}
+
+fn the_true_one(known: &Known, _: u64) -> Result<Belief, Error> {
+    let Hardware { params, delay, lag, .. } = known.believed;
     Ok(Belief { params, delay: delay + lag, zeros: [0.0; 2] })
 }
 
 /// Of the true parameters only the lengths and the centres of mass count.
-fn identified(hardware: &Hardware, seed: u64) -> Result<Belief, Error> {
+fn identified(&Known { hardware, believed }: &Known, seed: u64) -> Result<Belief, Error> {
     let ticks = (SECONDS / hardware.params.dt) as usize;
-    let recording: Vec<_> = Machine::new(*hardware, seed)?.shake(seed).take(ticks).collect();
-    let Calibration { params, delay, zeros, .. } = calibrate(&recording, hardware.params)?;
+    let turn = f64::from(hardware.counts[0]) / f64::from(believed.counts[0]);
+    let recording = Machine::new(hardware, seed)?.shake(seed).take(ticks);
+    let recording = recording.map(|x| Sample { angles: x.angles.map(|angle| angle * turn), ..x });
+    let recording: Vec<_> = recording.collect();
+    let Calibration { params, delay, zeros, .. } = calibrate(&recording, believed.params)?;
     Ok(Belief { params, delay, zeros })
 }
 
-fn without_friction(hardware: &Hardware, seed: u64) -> Result<Belief, Error> {
-    let mut belief = the_true_one(hardware, seed)?;
+fn without_friction(known: &Known, seed: u64) -> Result<Belief, Error> {
+    let mut belief = the_true_one(known, seed)?;
     let (damping1, damping2, coulomb1, coulomb2) = (0.0, 0.0, 0.0, 0.0);
     belief.params = Params { damping1, damping2, coulomb1, coulomb2, ..belief.params };
     Ok(belief)
 }
 
-fn control(hardware: &Hardware, seed: u64, slice: u32, model: Model) -> Result<Motion, Error> {
-    let Belief { params, delay, zeros } = model(hardware, seed)?;
-    let &Hardware { limit, counts, .. } = hardware;
+fn control(known: &Known, seed: u64, slice: u32, model: Model) -> Result<Motion, Error> {
+    let Belief { params, delay, zeros } = model(known, seed)?;
+    let &Known { hardware, believed: Hardware { limit, counts, .. } } = known;
     let (params, limit, delay) = (params.cast(), limit as f32, delay as f32);
     let settings = Settings { params, limit, counts, delay, plan_timeout: 1.0 };
     // The controller gets counts from which these zeros are subtracted.
     let [zero1, zero2] = hardware.zeros;
-    let hardware = Hardware { zeros: [zero1 - zeros[0], zero2 - zeros[1]], ..*hardware };
+    let hardware = Hardware { zeros: [zero1 - zeros[0], zero2 - zeros[1]], ..hardware };
     let mut rehearsal = Rehearsal::new(Machine::new(hardware, seed)?, settings, slice)?;
     let (mut motion, mut rng) = (Motion::default(), Pcg64::new(seed + 1000));
-    for (time, push) in motion.iter_mut().zip(PUSHES) {
-        // An error switches the motor off.
-        let Ok(upright) = rehearsal.run(SECONDS, UPRIGHT, HELD) else { break };
-        *time = upright;
+    for (time, push) in motion.upright.iter_mut().zip(PUSHES) {
+        match rehearsal.run(SECONDS, UPRIGHT, HELD) {
+            Ok(upright) => *time = upright,
+            // An error switches the motor off.
+            Err(error) => {
+                motion.error = Some((rehearsal.seconds(), error));
+                break;
+            }
+        }
         rehearsal.machine.push([(); 2].map(|()| uniform(&mut rng, -push, push)));
     }
     Ok(motion)
 }
 
 fn main() -> anyhow::Result<()> {
-    let Options { count, first, slice, numbers } = Options::parse();
+    let Options { count, first, slice, numbers, believe } = Options::parse();
     let mut hardware = Hardware::realaigym();
     for number in &numbers {
         set(&mut hardware, number).with_context(|| number.clone())?;
@@ -157,6 +183,11 @@ fn main() -> anyhow::Result<()> {
         advise(&hardware);
         println!();
     }
+    let mut believed = hardware;
+    for number in &believe {
+        set(&mut believed, number).with_context(|| number.clone())?;
+    }
+    let known = Known { hardware, believed };
     println!("| model | upright of {count} | after a push of 1 rad/s | of 6 rad/s |");
     println!("|---|---|---|---|");
     let models: [(&str, Model); 3] = [
@@ -166,11 +197,12 @@ fn main() -> anyhow::Result<()> {
     ];
     for (name, model) in models {
         let seeds = (first..first + count).into_par_iter();
-        let motions = seeds.map(|seed| control(&hardware, seed, slice, model));
+        let motions = seeds.map(|seed| control(&known, seed, slice, model));
         let motions: Vec<Motion> = motions.collect::<Result<_, _>>()?;
         print!("| {name} |");
         for part in 0..PUSHES.len() {
-            let mut times: Vec<f64> = motions.iter().filter_map(|motion| motion[part]).collect();
+            let mut times: Vec<f64> =
+                motions.iter().filter_map(|motion| motion.upright[part]).collect();
             times.sort_by(f64::total_cmp);
             match (times.get(times.len() / 2), times.last()) {
                 (Some(median), Some(latest)) => {
@@ -180,6 +212,13 @@ fn main() -> anyhow::Result<()> {
             }
         }
         println!();
+        let ends = motions.iter().filter_map(|motion| motion.error);
+        if let Some((latest, error)) = ends.clone().max_by(|x, y| x.0.total_cmp(&y.0)) {
+            let ends = ends.count();
+            println!(
+                "The motor was off in {ends} of {count}, at last after {latest:.1} s: {error}"
+            );
+        }
     }
     Ok(())
 }

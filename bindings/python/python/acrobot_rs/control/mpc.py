@@ -17,7 +17,9 @@ class Report(NamedTuple):
 
     zeros: tuple[float, float]  #: what the encoders say where the angles are 0, rad
     torque_factor: float  #: the torque that acts, divided by the one that is sent
-    misses: float  #: of the last hundred ticks, those whose angles no motion explains
+    #: of the last hundred ticks, those whose angles no motion explains, and 4 for each radian that
+    #: a joint has turned since the other one's encoder counted
+    misses: float
     plan_age: float  #: the time since the last plan, s; 0 before the first one
 
 
