@@ -7,7 +7,7 @@ use super::settings::{Autoreset, Settings};
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, SinCos, Zeros};
 use crate::numpy::Pcg64;
-use crate::physics::{State, sin_cos};
+use crate::physics::State;
 use crate::task::{Memory, Observation, Pose, ResetBounds, Task, episode};
 
 /// The states of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) has several.
@@ -59,11 +59,14 @@ impl<A: Arithmetic, const N: usize, M: Memory> Block<A, N, M> {
 
     /// Sets the state of a lane. Its episode continues.
     pub(super) fn set_state(&mut self, lane: usize, state: State<A::Scalar>) {
-        let new = sin_cos::<A>([state.theta1, state.theta2]);
-        for (numbers, number) in self.y.iter_mut().zip(<[A::Scalar; 4]>::from(state)) {
+        self.set_pose(lane, &Pose::of::<A>(state));
+    }
+
+    fn set_pose(&mut self, lane: usize, pose: &Pose<A::Scalar>) {
+        for (numbers, number) in self.y.iter_mut().zip(<[A::Scalar; 4]>::from(pose.state)) {
             set(&mut numbers.0, lane, number);
         }
-        for ((sines, cosines), (sin, cos)) in self.sin_cos.iter_mut().zip(new) {
+        for ((sines, cosines), (sin, cos)) in self.sin_cos.iter_mut().zip(pose.sin_cos) {
             set(&mut sines.0, lane, sin);
             set(&mut cosines.0, lane, cos);
         }
@@ -103,8 +106,8 @@ impl<A: Arithmetic, const N: usize, M: Memory> Block<A, N, M> {
         state: State<A::Scalar>,
         rng: Option<&mut Pcg64>,
     ) {
-        self.set_state(lane, state);
         let pose = Pose::of::<A>(state);
+        self.set_pose(lane, &pose);
         let mut memory = self.memory(lane);
         task.begin::<A, _>(&mut memory, &pose, rng);
         self.set_memory(lane, &memory);
@@ -162,12 +165,15 @@ impl<A: Arithmetic, const N: usize, M: Memory> Block<A, N, M> {
         let numbers = self.numbers(task);
         let to = take_mut(to, N);
         match <&mut [T::Observation; N]>::try_from(&mut *to) {
-            Ok(to) => write_rows::<A, T, N>(to, &numbers),
-            Err(_) => write_partial_rows::<A, T, N>(to, &numbers),
+            Ok(rows) => write_rows::<A, T, N>(rows, &numbers),
+            Err(_) => self.observe_masked(task, &[true; N], to),
         }
     }
 
+    /// Writes the observations of some lanes. Out of line, also for the last block: a constant
+    /// number of rows takes less time.
     #[cold]
+    #[inline(never)]
     fn observe_masked<T: Task<Memory = M>>(
         &self,
         task: &T,
@@ -257,22 +263,12 @@ type Numbered<A, T, const N: usize> =
 
 #[inline(always)]
 fn write_rows<A: Arithmetic, T: Task, const N: usize>(
-    to: &mut [T::Observation],
+    rows: &mut [T::Observation],
     numbers: &Numbered<A, T, N>,
 ) {
-    for (lane, to) in to.iter_mut().enumerate().take(N) {
-        to.write::<_, Lanes<A::Scalar, N>>(numbers, lane);
+    for (lane, row) in rows.iter_mut().enumerate().take(N) {
+        row.write::<_, Lanes<A::Scalar, N>>(numbers, lane);
     }
-}
-
-/// Those of the last block. Out of line: a constant number of rows takes less time.
-#[cold]
-#[inline(never)]
-fn write_partial_rows<A: Arithmetic, T: Task, const N: usize>(
-    to: &mut [T::Observation],
-    numbers: &Numbered<A, T, N>,
-) {
-    write_rows::<A, T, N>(to, numbers);
 }
 
 pub(super) struct Results<const N: usize> {

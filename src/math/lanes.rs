@@ -61,7 +61,12 @@ pub trait Numbers<S: Real>:
     fn all_abs_le(self, limit: Self) -> bool;
 
     /// `yes` where |x| ≤ `limit`, `no` elsewhere and for NaN.
-    fn select_abs_le(self, limit: S, yes: Self, no: Self) -> Self;
+    #[inline(always)]
+    fn select_abs_le(self, limit: S, yes: Self, no: Self) -> Self {
+        let select = |x: S, yes, no| if x.abs() <= limit { yes } else { no };
+        let (selected, _) = self.zip3(yes, no, |x, y, z| (select(x, y, z), z));
+        selected
+    }
 
     /// Which numbers are above the other one: false for NaN.
     fn simd_gt(self, other: Self) -> Self::Mask;
@@ -109,11 +114,6 @@ impl<S: Real> Numbers<S> for S {
     #[inline(always)]
     fn zip3(self, second: S, third: S, mut f: impl FnMut(S, S, S) -> (S, S)) -> (S, S) {
         f(self, second, third)
-    }
-
-    #[inline(always)]
-    fn select_abs_le(self, limit: S, yes: S, no: S) -> S {
-        if self.abs() <= limit { yes } else { no }
     }
 
     #[inline(always)]
@@ -214,14 +214,6 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
             (*y, *z) = f(*x, *y, *z);
         }
         (second, third)
-    }
-
-    #[inline(always)]
-    fn select_abs_le(self, limit: S, yes: Self, mut no: Self) -> Self {
-        for ((x, yes), no) in self.0.iter().zip(yes.0).zip(&mut no.0) {
-            *no = if x.abs() <= limit { yes } else { *no };
-        }
-        no
     }
 
     #[inline(always)]

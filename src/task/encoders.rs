@@ -12,7 +12,7 @@ use crate::physics::{State, wrap_each};
 /// use acrobot::task::{Balance, Encoders, Pose, Task};
 /// use acrobot::Fast;
 ///
-/// let mut encoders = Encoders::new(4096, 0.02, 0.005, [0, 0])?; // a turn, s, s, where it hangs
+/// let mut encoders = Encoders::new(4096, 0.02_f32, 0.005, [0, 0])?; // a turn, s, s, hanging
 /// let state = encoders.read([2048, -10]); // each 5 ms
 /// assert!(state.theta1 > 3.14 && (state.theta2 + 0.0153).abs() < 1e-4); // rad
 /// let observation = Balance.observe::<Fast, f32>(&Pose::of::<Fast>(state));
@@ -60,7 +60,7 @@ impl<S: Real> Encoders<S> {
     /// Within half a turn, as the angles that a simulation counts.
     fn angles(&self, counts: [i32; 2]) -> [S; 2] {
         let turn = self.of_a_turn;
-        let [_, resolution] = scale::<S, S>(S::from_f64(turn.into()));
+        let (_, resolution) = scale::<S, S>(S::from_f64(turn.into()));
         counts.map(|count| {
             let count = count.checked_rem(turn).unwrap_or_default();
             let turns = i32::from(2 * count > turn) - i32::from(2 * count < -turn);
@@ -71,9 +71,9 @@ impl<S: Real> Encoders<S> {
 
 /// How many counts a radian has, and how many radians a count.
 #[inline(always)]
-pub(super) fn scale<S: Real, V: Numbers<S>>(of_a_turn: V) -> [V; 2] {
+pub(super) fn scale<S: Real, V: Numbers<S>>(of_a_turn: V) -> (V, V) {
     let of_a_radian = of_a_turn * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
-    [of_a_radian, V::splat(S::from_f64(1.0)) / of_a_radian]
+    (of_a_radian, V::splat(S::from_f64(1.0)) / of_a_radian)
 }
 
 /// Replaces the velocities of a reading by filtered differences from the one before, `dt` earlier.

@@ -109,7 +109,7 @@ impl<T: Task, const DELAY: usize> Measured<T, DELAY> {
             *angle = wrap_each::<S, V>(*angle);
         }
         if self.instruments.encoder_counts.is_some() {
-            let [of_a_radian, resolution] = scale::<S, V>(counts);
+            let (of_a_radian, resolution) = scale::<S, V>(counts);
             for angle in &mut angles {
                 let counted = (*angle * of_a_radian).map(S::round_small) * resolution;
                 *angle = counts.select_abs_le(S::ZERO, *angle, counted);

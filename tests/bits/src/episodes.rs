@@ -224,7 +224,7 @@ pub const BATCHES: [u64; 4] = [
     0xeae8_bc44_fb2b_ab5e, // shared parameters
     0xcc78_d474_8108_4cf5, // subnormal numbers
     0x386b_bd46_1da1_e6cd, // own parameters
-    0x0,                   // a motor and sensors
+    0xbd12_ea2d_ae12_2f43, // a motor and sensors
 ];
 
 pub const SUBNORMAL: [u64; 4] = [

@@ -66,8 +66,8 @@ class Parameters:
     follow. A single environment may have any number of torques.
 
     The names in small letters from ``action_delay`` on are instruments: the motor and the sensors
-    of a real acrobot. ``None`` is ideal, and delays are at most 8 steps. Rewards and ends use the true state. A number acts at
-    once, and a draw from the next reset on.
+    of a real acrobot. ``None`` is ideal, and delays are at most 8 steps. Rewards and ends use the
+    true state. A number acts at once, and a draw from the next reset on.
     """
 
     # derive.py writes the parameters.
