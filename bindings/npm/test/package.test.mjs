@@ -77,14 +77,14 @@ test("the package has at most 293 KB and these files", () => {
   );
   const licences = ["APACHE", "MIT", "tiny-inflate"].map((name) => `LICENSE-${name}`);
   assert.deepEqual(paths, [...licences, "README.md", "package.json", ...entries].sort());
-  assert.ok(unpackedSize <= 293_200, `${unpackedSize} bytes`);
+  assert.ok(unpackedSize <= 294_300, `${unpackedSize} bytes`);
   assert.equal(name, "acrobot-rs");
 });
 
 test("the modules import nothing, and those of acrobots and of control cannot panic", () => {
   for (const [name, most, used] of [
     ["acrobots", 88_300, "acrobot_batch_step"],
-    ["control", 169_700, "acrobot_planner_plan"],
+    ["control", 171_000, "acrobot_planner_plan"],
     ["learner", 23_000, "train"],
   ]) {
     const [text, module] = ["wat", "wasm"].map((type) => join(here, `target/${name}.${type}`));

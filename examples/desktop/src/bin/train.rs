@@ -3,11 +3,14 @@
 //!
 //! ```text
 //! cargo run --release -p desktop --bin train
+//! cargo run --release -p desktop --bin train -- --save hold.bin    # for the firmware `hold`
 //! ```
 //!
 //! docs/learning.md has the table that it prints, and explains it.
 
 use std::f64::consts::PI;
+use std::fs;
+use std::path::PathBuf;
 
 use acrobot::arithmetic::Damped;
 use acrobot::batch::VecBatch;
@@ -18,6 +21,7 @@ use acrobot::task::{
     Balance, Draw, Draws, Encoders, Instruments, Measured, Pose, ResetBounds, Task,
 };
 use acrobot::{Error, Fast, Params, Portable, State};
+use anyhow::Context as _;
 use clap::Parser;
 use machine::{Hardware, Machine, Rehearsal};
 use rayon::prelude::*;
@@ -45,6 +49,9 @@ struct Options {
     /// Steps of the search, of 512,000 steps of an acrobot.
     #[arg(long, default_value_t = 400)]
     iterations: u64,
+    /// Instead of the table, train one policy for the slow motor and write it for crates/policy.
+    #[arg(long)]
+    save: Option<PathBuf>,
 }
 
 /// What machines of a kind have in common: the lag of the motor, s, and how far encoders are off,
@@ -228,6 +235,19 @@ fn planned(hardware: Hardware, lag: f64, seed: u64) -> Result<bool, Error> {
     Ok(matches!(rehearsal.run(30.0, FALLEN, 10.0), Ok(Some(_))))
 }
 
+/// The file of a policy with one layer and the largest torque, as crates/policy reads it.
+fn file(weights: &Weights) -> Vec<u8> {
+    let mut bytes = b"MLP1".to_vec();
+    bytes.extend([1, 1, 6, 0]);
+    bytes.extend((Balance::PARAMS.torques[2] as f32).to_le_bytes());
+    bytes.extend([1, 0, 0, 0]);
+    bytes.extend(0.0_f32.to_le_bytes()); // the bias
+    bytes.extend(weights.iter().flat_map(|weight| weight.to_le_bytes()));
+    let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&bytes);
+    bytes.extend(checksum.to_le_bytes());
+    bytes
+}
+
 /// How many of the machines hold, in percent.
 fn held(
     machines: u64,
@@ -237,12 +257,17 @@ fn held(
     Ok(100.0 * results?.iter().filter(|held| **held).count() as f64 / machines as f64)
 }
 
-fn main() -> Result<(), Error> {
-    let Options { machines, policies, iterations } = Options::parse();
+fn main() -> anyhow::Result<()> {
+    let Options { machines, policies, iterations, save } = Options::parse();
     let filter = Some(Draw::exactly(FILTER));
     let filtered = Instruments { velocity_filter: filter, ..Instruments::IDEAL };
     type Training<'a> = (&'a str, u64, &'a dyn Fn(Kind) -> (Instruments, Draws<f32>));
     let drawn = draws()?;
+    if let Some(path) = save {
+        let weights = train(KINDS[0].instruments(), drawn, 0, iterations)?;
+        return fs::write(&path, file(&weights))
+            .with_context(|| format!("{} is not written", path.display()));
+    }
     let trainings: [Training<'_>; 4] = [
         ("the regulator, without training", 0, &|_| (filtered, Draws::NONE)),
         ("ideal instruments", iterations, &|_| (filtered, Draws::NONE)),
