@@ -68,8 +68,9 @@ impl<A: Arithmetic, S: Storage<A, N, T::Memory>, T: Task, const N: usize> Batch<
     ///
     /// # Errors
     ///
-    /// Those of [`set_state`](Self::set_state), of [`set_memory`](Self::set_memory) and of [`set_params`](Self::set_params), which fails
-    /// with [`Error::SharedParams`] only for other parameters than those that all acrobots share.
+    /// Those of [`set_state`](Self::set_state), of [`set_memory`](Self::set_memory) and of
+    /// [`set_params`](Self::set_params), which fails with [`Error::SharedParams`] only for other
+    /// parameters than those that all acrobots share.
     pub fn set_member(&mut self, index: usize, member: Member<A, T::Memory>) -> Result<(), Error> {
         member.state.validate()?;
         self.settings.task.check_memory(&member.memory)?;

@@ -10,7 +10,7 @@ pub(super) type Noise = [f32; 2];
 /// How many numbers a counter has.
 pub(super) const PERIOD: u32 = 1 << 23;
 
-/// A generator of its own, which two acrobots share with a probability of 2⁻⁴⁵.
+/// A generator for one acrobot. Two acrobots share one with a probability of 2⁻⁴⁵.
 pub(super) fn seed<S: Real, R: Rng + ?Sized>(rng: &mut R) -> [S; 2] {
     // An odd stride visits each number.
     [rng.next_u32(), rng.next_u32() | 1].map(|x| S::from_f64(f64::from(x % PERIOD)))
