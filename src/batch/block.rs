@@ -159,11 +159,34 @@ impl<A: Arithmetic, const N: usize, M: Memory> Block<A, N, M> {
         task.observe::<A, Lanes<_, N>>(&pose.with(&self.memory))
     }
 
+    /// The observations of a task that remembers nothing, one after another: with AVX2 a step takes
+    /// 5 % longer if they are computed by lanes.
+    #[inline(always)]
+    fn rows<T: Task>(&self, task: &T) -> impl Iterator<Item = T::Observation> {
+        let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
+        let [theta1, theta2, dtheta1, dtheta2] = &self.y;
+        let sines = (sin1.0.iter().zip(&cos1.0)).zip(sin2.0.iter().zip(&cos2.0));
+        let states = (theta1.0.iter().zip(&theta2.0)).zip(dtheta1.0.iter().zip(&dtheta2.0));
+        sines.zip(states).map(|(((sin1, cos1), (sin2, cos2)), (angles, velocities))| {
+            let ((theta1, theta2), (dtheta1, dtheta2)) = (angles, velocities);
+            let state = [*theta1, *theta2, *dtheta1, *dtheta2].into();
+            let pose = Pose::new(state, [(*sin1, *cos1), (*sin2, *cos2)]);
+            let mut row = T::Observation::ZEROS;
+            let numbers = task.observe::<A, A::Scalar>(&pose.with(&Zeros::ZEROS));
+            row.write::<_, A::Scalar>(&numbers, 0);
+            row
+        })
+    }
+
     /// Writes the observations, and removes the written elements from `to`.
     #[inline(always)]
     pub(super) fn observe<T: Task<Memory = M>>(&self, task: &T, to: &mut &mut [T::Observation]) {
-        let numbers = self.numbers(task);
         let to = take_mut(to, N);
+        if const { M::LEN == 0 } {
+            to.iter_mut().zip(self.rows(task)).for_each(|(to, row)| *to = row);
+            return;
+        }
+        let numbers = self.numbers(task);
         match <&mut [T::Observation; N]>::try_from(&mut *to) {
             Ok(rows) => write_rows::<A, T, N>(rows, &numbers),
             Err(_) => self.observe_masked(task, &[true; N], to),
