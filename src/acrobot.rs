@@ -332,7 +332,7 @@ mod snapshot {
         rng: R,
         #[serde(
             skip_serializing_if = "numbers::is_empty::<A::Scalar, T::Memory>",
-            default = "numbers::zeros::<A::Scalar, T::Memory>",
+            default = "numbers::missing::<A::Scalar, T::Memory>",
             serialize_with = "numbers::serialize::<A::Scalar, T::Memory, _>",
             deserialize_with = "numbers::deserialize::<A::Scalar, T::Memory, _>"
         )]

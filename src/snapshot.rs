@@ -104,8 +104,11 @@ pub(crate) mod numbers {
         M::LEN == 0
     }
 
-    pub(crate) fn zeros<S: Real, M: Memory>() -> M::Of<S> {
-        Zeros::ZEROS
+    /// Numbers that no task accepts.
+    pub(crate) fn missing<S: Real, M: Memory>() -> M::Of<S> {
+        let mut memory = Zeros::ZEROS;
+        M::zip(&{ memory }, &mut memory, &mut |_: S, to: &mut S| *to = S::from_f64(f64::NAN));
+        memory
     }
 
     pub(crate) fn serialize<S: Real, M: Memory, Z: Serializer>(

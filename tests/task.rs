@@ -177,6 +177,9 @@ fn a_task_remembers_and_is_saved() {
     let error = serde_json::from_str::<Acrobot<Fast, Smooth>>(&text.replace("[0.0,0.0,", "[0.0,"));
     let error = error.unwrap_err().to_string();
     assert!(error.contains("invalid length 2, expected the 3 numbers that the task"), "{error}");
+    let (without, _) = text.split_once(",\"memory\"").unwrap();
+    let error = serde_json::from_str::<Acrobot<Fast, Smooth>>(&format!("{without}}}")).unwrap_err();
+    assert!(error.to_string().starts_with("memory must be finite"), "{error}");
     let rejected = acrobot.set_memory(([0.0, f32::NAN], 0.5)).unwrap_err();
     assert_eq!(rejected.to_string(), "memory must be finite in each element, got NaN");
 

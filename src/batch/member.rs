@@ -44,7 +44,7 @@ pub struct Member<A: Arithmetic, M: Memory = ()> {
         feature = "serde",
         serde(
             skip_serializing_if = "numbers::is_empty::<A::Scalar, M>",
-            default = "numbers::zeros::<A::Scalar, M>",
+            default = "numbers::missing::<A::Scalar, M>",
             serialize_with = "numbers::serialize::<A::Scalar, M, _>",
             deserialize_with = "numbers::deserialize::<A::Scalar, M, _>"
         )

@@ -80,12 +80,6 @@ impl<T: Task, const DELAY: usize> Measured<T, DELAY> {
         Ok(())
     }
 
-    /// What the task inside remembers.
-    #[must_use]
-    pub const fn inner_memory<S: Real>(memory: &Remembered<Self, S>) -> &Remembered<T, S> {
-        &memory.1
-    }
-
     /// What the sensors read in a pose: angles within ±π, and true velocities.
     #[inline(always)]
     fn read<S: Real, V: Numbers<S>>(
