@@ -60,11 +60,11 @@ fn a_recording_tells_the_zeros_the_delay_and_the_machine() {
 
 type Change<'a> = &'a dyn Fn(&mut Sample);
 
-/// On a recording of RealAIGym's machine, or on as many as the variable `MACHINES` says, of 10 s.
+/// On a recording of RealAIGym's machine, of 10 s. The variable `MACHINES` says how many, up to 10.
 #[test]
 fn what_is_wrong_with_a_recording_is_named() {
     let machines = env::var("MACHINES").map_or(1, |count| count.parse().unwrap());
-    let errors: Vec<_> = (7..7 + machines).map(named).collect();
+    let errors: Vec<_> = (0..machines).map(|i| named((i + 7) % 10)).collect();
     let medians = [0, 1, 2].map(|i| {
         let mut errors: Vec<f64> = errors.iter().map(|errors| errors[i]).collect();
         errors.sort_by(f64::total_cmp);
