@@ -6,7 +6,7 @@ use acrobot::batch::{Autoreset, VecBatch};
 use acrobot::env::Env;
 use acrobot::physics::wrap;
 use acrobot::task::{
-    Draw, Encoders, Gymnasium, GymnasiumV0, Instruments, Measured, Pose, Swingup, Task,
+    Balance, Draw, Encoders, Gymnasium, GymnasiumV0, Instruments, Measured, Pose, Swingup, Task,
 };
 use acrobot::{Acrobot, Action, Error, Fast, Portable, ResetOptions, State};
 use common::smooth::Smooth;
@@ -87,6 +87,12 @@ fn ideal_instruments_change_nothing() {
             assert_eq!(ideal.step_torque(torque), plain.step_torque(torque));
         }
         assert_eq!(ideal.rng() == plain.rng(), instruments == Instruments::IDEAL);
+    }
+    // Every second episode of a balance begins beyond π.
+    let mut ideal = measured::<Fast, Balance>(Instruments::IDEAL);
+    let mut plain = Acrobot::<Fast, Balance>::new(5);
+    for _ in 0..20 {
+        assert_eq!(ideal.reset(), plain.reset());
     }
 }
 

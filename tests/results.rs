@@ -16,7 +16,7 @@ use acrobot::control::plan::{Knot, Planner, Problem, SwingUp};
 use acrobot::control::regulator::{Lqe, Lqr, dlqe, dlqr, lqr, tvlqr};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
-use acrobot::task::{AnyTask, Draw, Draws};
+use acrobot::task::{AnyTask, Draw, Draws, Instruments, Measured};
 use acrobot::{Acrobot, Fast, Params, State, TimeLimit};
 use serde_json::{Value, json};
 
@@ -67,15 +67,14 @@ fn numbers<S: Real>(params: &Params<S>) -> Vec<f64> {
 }
 
 /// Kind, low, high, mean and standard deviation of each number.
-fn rows(draws: &Draws<f32>) -> Vec<f64> {
-    let mut draws = *draws.params();
-    let row = |draw: &mut Draw<f32>| match *draw {
+fn rows<const N: usize>(draws: [(&str, Draw<f32>); N]) -> Vec<f64> {
+    let row = |(_, draw)| match draw {
         Draw::Uniform { low, high } => [1.0, low, high, 0.0, 0.0],
         Draw::LogUniform { low, high } => [2.0, low, high, 0.0, 0.0],
         Draw::Normal { mean, std, low, high } => [3.0, low, high, mean, std],
         _ => [0.0; 5],
     };
-    draws.numbers_mut().map(row).as_flattened().iter().copied().map(f64::from).collect()
+    draws.into_iter().flat_map(row).map(f64::from).collect()
 }
 
 /// N m.
@@ -109,7 +108,7 @@ fn episodes(table: &mut Table) {
             result.push(step.reward.into());
         }
         let given = json!({
-            "task": number, "seed": [u32::MAX, u32::MAX], "draws": rows(&draws()),
+            "task": number, "seed": [u32::MAX, u32::MAX], "draws": rows(draws().params().numbers()),
             "torques": torques, "snapshot": snapshot(&one),
         });
         table.add("episode", given, result);
@@ -130,11 +129,55 @@ fn episodes(table: &mut Table) {
             result.extend(results.observations.as_flattened().iter().copied().map(f64::from));
         }
         let given = json!({
-            "task": number, "seed": [u32::MAX, u32::MAX], "draws": rows(&draws()), "count": count,
+            "task": number, "seed": [u32::MAX, u32::MAX], "draws": rows(draws().params().numbers()), "count": count,
             "max_steps": limit, "torques": torques, "snapshot": snapshot(&batch),
         });
         table.add("batch", given, result);
     }
+}
+
+/// A batch with each instrument: one is set, and the others are drawn.
+fn instruments(table: &mut Table) {
+    let instruments = Instruments {
+        action_delay: Some(Draw::Uniform { low: 0.0, high: 8.0 }),
+        observation_delay: Some(Draw::Uniform { low: 2.0, high: 2.0 }),
+        motor_lag: Some(Draw::LogUniform { low: 0.01, high: 0.1 }),
+        torque_error: Some(Draw::Normal { mean: 0.0, std: 0.1, low: -0.5, high: 0.5 }),
+        angle_noise: Some(Draw::Uniform { low: 0.0, high: 0.01 }),
+        encoder_zero1: Some(Draw::Uniform { low: -0.1, high: 0.1 }),
+        encoder_zero2: Some(Draw::Fixed),
+        encoder_counts: Some(Draw::Uniform { low: 4096.0, high: 4096.0 }),
+        velocity_filter: Some(Draw::Uniform { low: 0.0, high: 0.05 }),
+    };
+    type Task = Measured<AnyTask, 8>;
+    let count = 5;
+    let task = Task::new(AnyTask::Balance, instruments).unwrap();
+    let mut batch = VecBatch::<Damped<Fast>, Task>::with_task(u64::MAX, task, count).unwrap();
+    let zeros: Vec<f32> = (0..count).map(|index| index as f32 / 8.0).collect();
+    for (index, encoder_zero2) in zeros.iter().copied().enumerate() {
+        let mut memory = batch.memory(index).unwrap();
+        let drawn = Task::drawn(&memory);
+        Task::set_drawn(&mut memory, Instruments { encoder_zero2, ..drawn }).unwrap();
+        batch.set_memory(index, memory).unwrap();
+    }
+    batch.reset_with_seed(u64::MAX);
+    let torques: Vec<f32> = (0..20 * count).map(torque).collect();
+    let mut result = Vec::new();
+    for torques in torques.chunks(count) {
+        let results = batch.step(torques).unwrap();
+        result.extend(results.rewards.iter().copied());
+        result.extend(results.observations.as_flattened());
+    }
+    for index in 0..count {
+        let drawn = Task::drawn(&batch.memory(index).unwrap());
+        result.extend(drawn.numbers().map(|(_, number)| number));
+    }
+    let draws = instruments.numbers().map(|(name, draw)| (name, draw.unwrap()));
+    let given = json!({
+        "seed": [u32::MAX, u32::MAX], "draws": rows(draws), "zeros": zeros, "count": count,
+        "torques": torques, "snapshot": snapshot(&batch),
+    });
+    table.add("instruments", given, result);
 }
 
 fn snapshot(value: &impl serde::Serialize) -> Vec<u8> {
@@ -355,6 +398,7 @@ fn mpc(table: &mut Table) {
 fn other_languages_get_these_results() {
     let mut table = Table::default();
     episodes(&mut table);
+    instruments(&mut table);
     models::<Damped<Fast>>(&mut table);
     models::<Damped<Portable>>(&mut table);
     plans(&mut table);

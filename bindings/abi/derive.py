@@ -124,6 +124,10 @@ draws = [(name, kind, "", "") for name, kind, *_ in params[:-1]]
 struct("data", "acrobot_draws_t", draws, "acrobot_draw_t")
 struct("plan", "acrobot_cost_t", costs)
 struct("estimate", "acrobot_parameter_std_t", stds)
+settings = [(name, "S", *texts) for name, _, *texts in instruments]
+struct("instruments", "acrobot_instruments_t", settings)
+draws = [(name, "S", "", "") for name, *_ in instruments]
+struct("instruments", "acrobot_instrument_draws_t", draws, "acrobot_draw_t")
 lines = [""]
 for number, (name, text) in enumerate(tasks.items()):
     lines += wrapped(text, "/// ")
@@ -157,7 +161,9 @@ lines += ["const fn has<T>(last: usize, expected: usize, size: usize) {"]
 lines += ["    assert!(last == expected && size_of::<T>() == size);", "}", "", "const _: () = {"]
 for name, fields in structs.items():
     last, (start, _) = [*fields.items()][-1]
-    lines += [f"    has::<{name}>(offset_of!({name}, {last}), {start}, {sizes[name][0]});"]
+    line = f"    has::<{name}>(offset_of!({name}, {last}), {start}, {sizes[name][0]});"
+    parts = [f"        offset_of!({name}, {last}),", f"        {start},", f"        {sizes[name][0]},"]
+    lines += [line] if len(line) <= 100 else [f"    has::<{name}>(", *parts, "    );"]
 write(f"{ABI}layout.rs", "\n".join([*lines, "};", ""]))
 
 
@@ -207,6 +213,7 @@ def interface(file, name, fields):
 
 
 interface("index.d.ts", "Params", with_defaults('"book"'))
+interface("instruments.d.ts", "Instruments", settings)
 interface("control.d.ts", "Cost", costs)
 interface("control.d.ts", "ParameterStd", stds)
 lines = ["/**", " * A task, by its name:", " *"]

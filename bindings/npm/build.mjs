@@ -23,6 +23,7 @@ const VECTORS = [
   "-Cllvm-args=-unroll-full-max-count=3", "-Cllvm-args=-unroll-allow-partial=false",
   "-Cllvm-args=-inline-threshold=60", "-Copt-level=2",
 ];
+const ESM = { absWorkingDir: process.cwd(), bundle: true, format: "esm" };
 /**
  * wasm-opt's passes for smaller code. `--const-hoisting` turns constants that occur often into
  * locals. `--low-memory-unused` is safe because Rust puts nothing below address 1024.
@@ -32,8 +33,8 @@ const PASSES = [
   "--strip-debug", "--strip-producers", "--strip-target-features",
 ];
 
-/** Compiles a crate for WebAssembly, and makes the module smaller. Returns its bytes. */
-async function compile(name, crate, library, flags, options) {
+/** Compiles an entry's crate for WebAssembly, and makes the module smaller. Returns its bytes. */
+async function compile(entry, name, crate, library, flags, options) {
   const env = { ...process.env, RUSTFLAGS: ["-Ctarget-feature=+simd128", ...flags].join(" ") };
   // Named, because a user's configuration of Cargo may have others.
   const places = ["--target", "wasm32-unknown-unknown", "--target-dir", `target/${name}`];
@@ -41,7 +42,7 @@ async function compile(name, crate, library, flags, options) {
   run("cargo", ["rustc", ...common, ...places, "--crate-type", "cdylib", ...options], env);
   const built = `target/${name}/wasm32-unknown-unknown/release/${library}.wasm`;
   const [graph, text, out] = ["json", "wat", "wasm"].map((type) => `target/${name}.${type}`);
-  const roots = JSON.stringify(used(built));
+  const roots = JSON.stringify(used(entry, built));
   const time = (file) => statSync(file, { throwIfNoEntry: false })?.mtimeMs ?? 0;
   if (time(graph) === 0 || readFileSync(graph, "utf8") !== roots) writeFileSync(graph, roots);
   const inputs = [built, graph, "build.mjs", "package-lock.json"];
@@ -57,22 +58,21 @@ async function compile(name, crate, library, flags, options) {
   return readFileSync(out);
 }
 
-/** The exports that the package names, or whose prefix it quotes, as roots for wasm-metadce. */
-function used(built) {
-  const sources = readdirSync("package").filter((file) => file.endsWith(".js"));
-  const code = sources.map((file) => readFileSync(`package/${file}`, "utf8")).join();
+/** The exports that an entry names, or whose prefix it quotes, as roots for wasm-metadce. */
+function used(entry, built) {
+  const entryPoints = [`package/${entry}.js`];
+  const { metafile } = buildSync({ ...ESM, entryPoints, metafile: true, write: false });
+  const code = Object.keys(metafile.inputs).map((file) => readFileSync(file, "utf8")).join();
   const names = new Set(code.match(/\w+/g));
-  const prefixes = code.match(/(?<=")acrobot\w*_estimator(?=")/g);
+  const prefixes = code.match(/(?<=")acrobot\w*_estimator(?=")/g) ?? [];
   return WebAssembly.Module.exports(new WebAssembly.Module(readFileSync(built)))
     .filter(({ name }) => names.has(name) || prefixes.some((each) => name.startsWith(each)))
     .map(({ name }) => ({ name, root: true, export: name }));
 }
 
 /** Compiles the functions of bindings/abi with a feature. */
-const compileAbi = (name, flags) =>
-  compile(name, "../abi", "acrobot", flags, ["--no-default-features", "--features", name]);
-
-const ESM = { absWorkingDir: process.cwd(), bundle: true, format: "esm" };
+const compileAbi = (entry, name, flags) =>
+  compile(entry, name, "../abi", "acrobot", flags, ["--no-default-features", "--features", name]);
 
 /** Writes a file of the package with its module inside: a browser loads it with one request. */
 async function bundle(entry, compiled) {
@@ -104,9 +104,10 @@ mkdirSync("dist");
 // Names of the package stay, for messages and debuggers; those of the decompressor become short.
 buildSync({ entryPoints: ["tiny-inflate"], minify: true, outfile: "target/inflate.js", ...ESM });
 await Promise.all([
-  bundle("index", compileAbi("acrobots", VECTORS)),
-  bundle("control", compileAbi("control", ["-Copt-level=s"])),
-  bundle("policies", compile("learner", "learner", "acrobot_learner", VECTORS, [])),
+  bundle("index", compileAbi("index", "acrobots", VECTORS)),
+  bundle("instruments", compileAbi("instruments", "instruments", VECTORS)),
+  bundle("control", compileAbi("control", "control", ["-Copt-level=s"])),
+  bundle("policies", compile("policies", "learner", "learner", "acrobot_learner", VECTORS, [])),
 ]);
 // npm shows what users need to know.
 writeFileSync("dist/README.md", readFileSync("README.md", "utf8").split("\n## Build and test")[0]);

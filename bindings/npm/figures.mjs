@@ -38,6 +38,7 @@ const size = (path) => {
   return `${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)}`;
 };
 const control = kilobytes(statSync("target/control.wasm").size);
+const instruments = kilobytes(statSync("target/instruments.wasm").size);
 const report = execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"]);
 const [{ size: packed, unpackedSize }] = JSON.parse(report);
 console.log(`
@@ -47,6 +48,7 @@ console.log(`
 | \`index.js\`, with the module inside | ${size("dist/index.js")} |
 | \`policies.js\`, with the learner's inside | ${size("dist/policies.js")} |
 | \`control.js\`, with a module of ${control} inside | ${size("dist/control.js")} |
+| \`instruments.js\`, with a module of ${instruments} inside | ${size("dist/instruments.js")} |
 | package, with types and licences | ${kilobytes(unpackedSize)}, packed ${kilobytes(packed)} |
 | \`Acrobot.step\` | ${single} |
 | \`Batch.step\` of 1,024, with observations | ${many} |`);

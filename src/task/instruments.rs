@@ -81,6 +81,16 @@ impl Instruments {
         velocity_filter: None,
     };
 
+    /// Whether an agent sees the true state. A reading of it is wrapped, which rounds.
+    pub(super) const fn has_ideal_sensors(&self) -> bool {
+        self.observation_delay.is_none()
+            && self.angle_noise.is_none()
+            && self.encoder_zero1.is_none()
+            && self.encoder_zero2.is_none()
+            && self.encoder_counts.is_none()
+            && self.velocity_filter.is_none()
+    }
+
     /// Checks what resets may draw.
     pub(super) fn check(&self, delay: usize) -> Result<(), Error> {
         for ((name, draw), field) in self.numbers().into_iter().zip(FIELDS) {

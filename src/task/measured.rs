@@ -31,6 +31,13 @@ type Sensors<const DELAY: usize> = ([f32; 4], [[f32; DELAY]; 4]);
 /// What resets drew, and what the instruments remember.
 type Own<const DELAY: usize> = (([f32; COUNT], Noise), (Motor<DELAY>, Sensors<DELAY>));
 
+/// A task with ideal instruments.
+impl<T: Task, const DELAY: usize> From<T> for Measured<T, DELAY> {
+    fn from(task: T) -> Self {
+        Self { task, instruments: Instruments::IDEAL }
+    }
+}
+
 impl<T: Task, const DELAY: usize> Measured<T, DELAY> {
     /// A task with these instruments.
     ///
@@ -208,6 +215,9 @@ impl<T: Task, const DELAY: usize> Task for Measured<T, DELAY> {
         pose: &Pose<V, Remembered<Self, V>>,
     ) -> <T::Observation as Observation>::Of<V> {
         let (((drawn, _), (_, (newest, past))), inner) = pose.memory;
+        if self.instruments.has_ideal_sensors() {
+            return self.task.observe::<A, V>(&pose.with(inner));
+        }
         let [_, delay, ..] = *drawn;
         let mut seen = *newest;
         if self.instruments.observation_delay.is_some() {

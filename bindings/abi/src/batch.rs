@@ -9,18 +9,20 @@ use acrobot::arithmetic::Damped;
 use acrobot::batch::StepBuffers;
 use acrobot::batch::{Batch, BatchMemory, Block, Input, LaneParams, OwnParams};
 use acrobot::numpy::Pcg64;
-use acrobot::task::AnyTask;
+use acrobot::task::Task;
 
 use crate::data::acrobot_observation_t;
 use crate::memory::{Holder, Span, array, change, check, check_apart, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
-use crate::task::{acrobot_reset_options_t, read_options, task_of};
+use crate::task::{BatchTask, acrobot_reset_options_t, any_task, read_options, task_of};
 
 /// Alignment of a batch's memory.
 pub const ACROBOT_BATCH_ALIGN: usize = 64;
 
 // The header has these numbers, too: ACROBOT_BATCH_SIZE.
-const HEADER: usize = 704;
+pub const HEADER: usize = if cfg!(feature = "instruments") { 896 } else { 704 };
+/// What the task remembers of an acrobot.
+pub const MEMORY: usize = if cfg!(feature = "instruments") { 224 } else { 0 };
 const GENERATOR: usize = size_of::<Pcg64>();
 /// Acrobots that are stepped side by side. Microcontrollers have no SIMD for floats.
 const LANES: usize = if cfg!(target_family = "wasm") {
@@ -83,7 +85,7 @@ pub struct acrobot_batch_results_t {
     pub final_observations: *mut acrobot_observation_t,
 }
 
-type LanesBlock = Block<Damped<Fast>, LANES>;
+type LanesBlock = Block<Damped<Fast>, LANES, <BatchTask as Task>::Memory>;
 
 type Own = LaneParams<Damped<Fast>, LANES>;
 
@@ -91,7 +93,7 @@ type Own = LaneParams<Damped<Fast>, LANES>;
 pub type Memory =
     BatchMemory<&'static mut [LanesBlock], &'static mut [Pcg64], OwnParams<&'static mut [Own]>>;
 
-pub type AnyBatch = Batch<Damped<Fast>, Memory, AnyTask, LANES>;
+pub type AnyBatch = Batch<Damped<Fast>, Memory, BatchTask, LANES>;
 
 pub struct Placed {
     /// Where `acrobot_batch_init` put it.
@@ -122,7 +124,7 @@ const _: () = {
         4 => [192, 576, 80],
         _ => [640, 2240, 80],
     };
-    let _: [(); SIZES[0]] = [(); BLOCK];
+    let _: [(); (SIZES[0] + LANES * MEMORY).next_multiple_of(64)] = [(); BLOCK];
     let _: [(); SIZES[1]] = [(); OWN];
     let _: [(); SIZES[2]] = [(); GENERATOR];
     // The batch writes an observation as six floats.
@@ -212,8 +214,9 @@ pub unsafe extern "C" fn acrobot_batch_init(
 ) -> acrobot_status_t {
     status(|| {
         let task = task_of(task)?;
+        #[allow(clippy::useless_conversion, reason = "with instruments it is another type")]
         place(memory, size, (count, own_params), batch, |memory| {
-            Ok(Batch::with_task(seed, task, memory)?)
+            Ok(Batch::with_task(seed, task.into(), memory)?)
         })
     })
 }
@@ -309,7 +312,7 @@ pub unsafe extern "C" fn acrobot_batch_settings(
         let batch = &placed.batch;
         Ok(acrobot_batch_settings_t {
             count: batch.len(),
-            task: *batch.task() as c_int,
+            task: any_task(batch.task()) as c_int,
             own_params: batch.has_own_params(),
             autoreset: batch.autoreset() as c_int,
             max_steps: batch.max_steps().get(),

@@ -218,16 +218,24 @@ impl TryFrom<acrobot_draws_t> for Draws<f32> {
         let draws: [acrobot_draw_t; NUMBERS] = unsafe { transmute(draws) };
         let mut params = Draws::FIXED;
         for (to, draw) in params.numbers_mut().into_iter().zip(draws) {
-            let acrobot_draw_t { kind, low, high, mean, std } = draw;
-            *to = match kind {
-                ACROBOT_DRAW_FIXED => Draw::Fixed,
-                ACROBOT_DRAW_UNIFORM => Draw::Uniform { low, high },
-                ACROBOT_DRAW_LOG_UNIFORM => Draw::LogUniform { low, high },
-                ACROBOT_DRAW_NORMAL => Draw::Normal { mean, std, low, high },
-                _ => return Err(Rejected::number("kind", kind.into(), "", "from 0 to 3")),
-            };
+            *to = draw.try_into()?;
         }
         Ok(Self::new(params)?)
+    }
+}
+
+impl TryFrom<acrobot_draw_t> for Draw<f32> {
+    type Error = Rejected;
+
+    fn try_from(draw: acrobot_draw_t) -> Result<Self, Rejected> {
+        let acrobot_draw_t { kind, low, high, mean, std } = draw;
+        match kind {
+            ACROBOT_DRAW_FIXED => Ok(Self::Fixed),
+            ACROBOT_DRAW_UNIFORM => Ok(Self::Uniform { low, high }),
+            ACROBOT_DRAW_LOG_UNIFORM => Ok(Self::LogUniform { low, high }),
+            ACROBOT_DRAW_NORMAL => Ok(Self::Normal { mean, std, low, high }),
+            _ => Err(Rejected::number("kind", kind.into(), "", "from 0 to 3")),
+        }
     }
 }
 

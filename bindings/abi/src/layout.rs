@@ -6,6 +6,7 @@ use crate::batch::*;
 use crate::data::*;
 use crate::estimate::*;
 use crate::identify::*;
+use crate::instruments::*;
 use crate::model::*;
 use crate::mpc::*;
 use crate::plan::*;
@@ -49,4 +50,10 @@ const _: () = {
     has::<acrobot_report_t>(offset_of!(acrobot_report_t, plan_age), 16, 20);
     has::<acrobot_batch_results_t>(offset_of!(acrobot_batch_results_t, final_observations), 16, 20);
     has::<acrobot_batch_settings_t>(offset_of!(acrobot_batch_settings_t, max_steps), 16, 20);
+    has::<acrobot_instrument_draws_t>(
+        offset_of!(acrobot_instrument_draws_t, velocity_filter),
+        160,
+        180,
+    );
+    has::<acrobot_instruments_t>(offset_of!(acrobot_instruments_t, velocity_filter), 32, 36);
 };

@@ -52,13 +52,16 @@ pub mod batch;
 #[cfg(feature = "acrobots")]
 pub mod members;
 
+#[cfg(feature = "instruments")]
+pub mod instruments;
+
 #[cfg(all(feature = "acrobots", any(target_pointer_width = "64", target_family = "wasm")))]
 pub mod snapshot;
 
 #[cfg(target_family = "wasm")]
 mod heap;
 
-#[cfg(all(target_family = "wasm", feature = "acrobots", feature = "control"))]
+#[cfg(all(target_family = "wasm", feature = "control", feature = "instruments"))]
 mod layout;
 
 #[cfg(feature = "acrobots")]

@@ -7,10 +7,11 @@ use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use postcard::Deserializer;
 use serde::Serialize;
 
-use crate::batch::{acrobot_batch_t, place};
+use crate::batch::{HEADER, MEMORY, acrobot_batch_t, place};
 use crate::memory::{Holder, Span, array, check, check_apart, read_slice};
 use crate::single::acrobot_t;
 use crate::status::{Rejected, acrobot_status_t, acrobot_status_t::*, status};
+use crate::task::BatchTask;
 
 /// Bytes of a snapshot of an acrobot, at most.
 pub const ACROBOT_SNAPSHOT_SIZE: usize = 224;
@@ -92,7 +93,7 @@ fn whole(rest: &[u8]) -> Result<(), Rejected> {
 /// Bytes of a snapshot of a batch of `count` acrobots, at most.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_batch_snapshot_size(count: usize) -> usize {
-    count.saturating_mul(160).saturating_add(640)
+    count.saturating_mul(160 + MEMORY).saturating_add(HEADER)
 }
 
 /// As acrobot_save, for a batch.
@@ -106,9 +107,10 @@ pub unsafe extern "C" fn acrobot_batch_save(
     save(batch, (bytes, size), length, |placed| &placed.batch)
 }
 
-/// The first fields of a batch's snapshot: the number of acrobots and one, type, version, task and
-/// arithmetic, bounds, limit of steps, when resets are, and whether parameters are own.
-type Beginning<'a> = (usize, &'a [u8], u32, &'a [u8], &'a [u8], [f64; 2], u32, u8, bool);
+/// The first fields of a batch's snapshot: the number of acrobots and one, type, version, names of
+/// task and arithmetic, the task, bounds, limit of steps, when resets are, and whether parameters
+/// are own.
+type Beginning<'a> = (usize, &'a [u8], u32, &'a [u8], &'a [u8], BatchTask, [f64; 2], u32, u8, bool);
 
 fn saved(content: &[u8]) -> Result<(usize, bool), Rejected> {
     let (beginning, _) = postcard::take_from_bytes::<Beginning<'_>>(content).map_err(other)?;

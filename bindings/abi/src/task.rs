@@ -4,6 +4,8 @@ use core::ffi::c_int;
 
 use acrobot::ResetOptions;
 use acrobot::numpy::SeedSequence;
+#[cfg(feature = "instruments")]
+use acrobot::task::Measured;
 use acrobot::task::{AnyTask, ResetBounds};
 
 use crate::memory::{Span, check_apart, read, read_slice};
@@ -24,6 +26,25 @@ pub const ACROBOT_TASK_SWINGUP: c_int = 1;
 pub const ACROBOT_TASK_BALANCE: c_int = 2;
 
 // The end of the tasks.
+
+/// The task of batches.
+#[cfg(not(feature = "instruments"))]
+pub type BatchTask = AnyTask;
+
+/// The task of batches, which have more memory than without instruments.
+#[cfg(feature = "instruments")]
+pub type BatchTask = Measured<AnyTask, { crate::instruments::ACROBOT_LONGEST_DELAY }>;
+
+/// The task of a batch without its instruments.
+#[cfg(not(feature = "instruments"))]
+pub fn any_task(task: &BatchTask) -> AnyTask {
+    *task
+}
+
+#[cfg(feature = "instruments")]
+pub fn any_task(task: &BatchTask) -> AnyTask {
+    *task.task()
+}
 
 pub fn task_of(number: c_int) -> Result<AnyTask, Rejected> {
     let task = usize::try_from(number).ok().and_then(|index| AnyTask::ALL.get(index));

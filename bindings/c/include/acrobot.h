@@ -41,6 +41,16 @@
 #define ACROBOT_GENERATOR 40
 #endif
 
+// Define ACROBOT_INSTRUMENTS if the library is compiled with the feature `instruments`: then an
+// acrobot of a batch has a motor and sensors, and needs more memory.
+#ifdef ACROBOT_INSTRUMENTS
+#define ACROBOT_BATCH_HEADER 896
+#define ACROBOT_MEMORY 224
+#else
+#define ACROBOT_BATCH_HEADER 704
+#define ACROBOT_MEMORY 0
+#endif
+
 // Bytes of a batch of `count` acrobots, and of one with own parameters, as constants of size_t:
 // sizeof is one without a cast, of which C++ compilers may warn.
 #ifdef __wasm__
@@ -54,8 +64,8 @@
 #define ACROBOT_BATCH_OWN_SIZE(count) ACROBOT_BATCH_OF(count, 1, 64 + 192)
 #endif
 #define ACROBOT_BATCH_OF(count, lanes, block) \
-  (704 + (count) * sizeof(char[ACROBOT_GENERATOR]) + \
-   ((count) + sizeof(char[lanes]) - 1) / lanes * (block))
+  (ACROBOT_BATCH_HEADER + (count) * sizeof(char[ACROBOT_GENERATOR]) + \
+   ((count) + sizeof(char[lanes]) - 1) / lanes * ((block + lanes * ACROBOT_MEMORY + 63) / 64 * 64))
 
 // cbindgen writes the rest, and its comments, from the library's source.
 
@@ -136,6 +146,11 @@
 
 // The acrobots step on until acrobot_batch_reset_masked or another reset.
 #define ACROBOT_AUTORESET_DISABLED 2
+
+#if defined(ACROBOT_INSTRUMENTS)
+// The longest delay, steps.
+#define ACROBOT_LONGEST_DELAY 8
+#endif
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
 // Bytes of a snapshot of an acrobot, at most.
@@ -665,6 +680,48 @@ typedef struct {
   uint32_t max_steps;
 } acrobot_batch_settings_t;
 
+#if defined(ACROBOT_INSTRUMENTS)
+// How resets draw the instruments, in the order of acrobot_instruments_t. Zeros draw nothing:
+// the numbers stay.
+typedef struct {
+  acrobot_draw_t action_delay;
+  acrobot_draw_t observation_delay;
+  acrobot_draw_t motor_lag;
+  acrobot_draw_t torque_error;
+  acrobot_draw_t angle_noise;
+  acrobot_draw_t encoder_zero1;
+  acrobot_draw_t encoder_zero2;
+  acrobot_draw_t encoder_counts;
+  acrobot_draw_t velocity_filter;
+} acrobot_instrument_draws_t;
+#endif
+
+#if defined(ACROBOT_INSTRUMENTS)
+// The motor and the sensors of an acrobot. Zeros are ideal: a torque acts at once, and the
+// observation is that of the true state.
+typedef struct {
+  // How many steps later a torque acts: a whole number, each equally likely.
+  float action_delay;
+  // How many steps later an agent sees a reading: a whole number, each equally likely.
+  float observation_delay;
+  // The time constant of the motor, s, from 0 to 1000: the torque approaches the chosen one.
+  float motor_lag;
+  // The relative error of the motor's torque, from −1 to 1000: with 0.1 it is 10 % too large.
+  float torque_error;
+  // The standard deviation of a reading of an angle, rad, from 0 to 10.
+  float angle_noise;
+  // What encoder 1 reads where θ1 is 0, rad, from −π to π.
+  float encoder_zero1;
+  // What encoder 2 reads where θ2 is 0, rad, from −π to π.
+  float encoder_zero2;
+  // The counts of the encoders for a turn, from 1 to 2²²: readings are whole counts.
+  float encoder_counts;
+  // The time constant of a low-pass filter, s, from 0 to 1000. The agent sees filtered
+  // differences of readings as velocities, and not the true ones.
+  float velocity_filter;
+} acrobot_instruments_t;
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -1059,6 +1116,34 @@ acrobot_status_t acrobot_batch_set_all_params(acrobot_batch_t *batch,
 // from the same random numbers. Zeros end it.
 acrobot_status_t acrobot_batch_set_draws(acrobot_batch_t *batch, const acrobot_draws_t *draws,
     acrobot_error_t *error);
+
+#if defined(ACROBOT_INSTRUMENTS)
+// From now on each reset draws the instruments of each acrobot, after the initial state and from
+// the same random numbers. A delay is a whole number up to ACROBOT_LONGEST_DELAY, drawn uniformly.
+acrobot_status_t acrobot_batch_set_instrument_draws(acrobot_batch_t *batch,
+    const acrobot_instrument_draws_t *draws, acrobot_error_t *error);
+#endif
+
+#if defined(ACROBOT_INSTRUMENTS)
+// The instruments of an acrobot: those that the last reset drew, or that were set.
+acrobot_status_t acrobot_batch_instruments(const acrobot_batch_t *batch, size_t index,
+    acrobot_instruments_t *instruments);
+#endif
+
+#if defined(ACROBOT_INSTRUMENTS)
+// Sets the instruments of an acrobot, until a reset draws them. All acrobots of a batch have the
+// kinds of instruments that one has, so with a `velocity_filter` all see differences of readings,
+// which are not filtered where it is 0.
+acrobot_status_t acrobot_batch_set_instruments(acrobot_batch_t *batch, size_t index,
+    const acrobot_instruments_t *instruments, acrobot_error_t *error);
+#endif
+
+#if defined(ACROBOT_INSTRUMENTS)
+// As acrobot_batch_set_instruments, for all acrobots. Where a number is 0 and resets draw none,
+// all are ideal.
+acrobot_status_t acrobot_batch_set_all_instruments(acrobot_batch_t *batch,
+    const acrobot_instruments_t *instruments, acrobot_error_t *error);
+#endif
 
 #if (defined(ACROBOT_HAS_SNAPSHOTS) || defined(__wasm__))
 // Writes a snapshot into `bytes`, which has `size` bytes: ACROBOT_SNAPSHOT_SIZE is enough. An

@@ -16,7 +16,7 @@ BEGIN {
   if (fields ~ /bytes\[ACROBOT/) holders[type] = 1
   if (fields ~ /[*]/) members[type] = fields
 }
-/^#if.*__wasm__/ || /^#endif/ && guarded { guarded = !guarded; print; table = table $0 "\n" }
+/^#if.*(__wasm__|ACROBOT_INSTRUMENTS)/ || /^#endif/ && guarded { guarded = !guarded; print; table = table $0 "\n" }
 /^acrobot_status_t/ { owner = $2; sub(/[(].*/, "", owner) }
 owner { text = text $0 }
 owner && /[)];$/ {

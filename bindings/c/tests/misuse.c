@@ -33,7 +33,7 @@ struct function {
     struct argument arguments[SLOTS];
 };
 #define MARGIN 192
-#define MOST sizeof(acrobot_controller_t)
+#define MOST (SIZE > sizeof(acrobot_controller_t) ? SIZE : sizeof(acrobot_controller_t))
 ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t arena[MARGIN + MOST + MARGIN];
 ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t other[MOST], ones[WIDTH];
 // The alignment of the largest is enough.

@@ -79,14 +79,19 @@ static acrobot_state_t state_of(const double *numbers)
     return state;
 }
 
-static const acrobot_draws_t *draws_of(const double *rows)
+static void to_draws(void *to, const double *rows, size_t count)
 {
-    static acrobot_draws_t draws;
-    acrobot_draw_t *draw = (acrobot_draw_t *)(void *)&draws;
-    for (int i = 0; i < 21; i++) {
+    acrobot_draw_t *draw = (acrobot_draw_t *)to;
+    for (size_t i = 0; i < count; i++) {
         draw[i].kind = (int)rows[5 * i];
         to_floats(&draw[i].low, rows + 5 * i + 1, 4);
     }
+}
+
+static const acrobot_draws_t *draws_of(const double *rows)
+{
+    static acrobot_draws_t draws;
+    to_draws(&draws, rows, 21);
     return &draws;
 }
 
@@ -135,6 +140,12 @@ static void compare_snapshot(const uint8_t *bytes, size_t length, const double *
     } \
     SNAPSHOT(acrobot_save, &acrobot)
 
+// That of a library with instruments has these, too.
+#ifdef ACROBOT_INSTRUMENTS
+#define BATCH_SNAPSHOT(holder) (void)snapshot
+#else
+#define BATCH_SNAPSHOT(holder) SNAPSHOT(acrobot_batch_save, holder)
+#endif
 ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_OWN_SIZE(ACROBOTS)];
 #define batch() \
     acrobot_batch_t *holder; \
@@ -155,7 +166,44 @@ ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_OWN_SIZ
         COMPARE(rewards); \
         COMPARE(rows); \
     } \
+    BATCH_SNAPSHOT(holder)
+
+// The library has instruments or not.
+#ifdef ACROBOT_INSTRUMENTS
+#define instruments() \
+    acrobot_batch_t *holder; \
+    float rewards[ACROBOTS], inputs[ACROBOTS]; \
+    bool terminated[ACROBOTS], truncated[ACROBOTS]; \
+    acrobot_observation_t rows[ACROBOTS]; \
+    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL}; \
+    acrobot_instrument_draws_t how; \
+    acrobot_instruments_t own = {0, 0, 0, 0, 0, 0, 0, 0, 0}; \
+    CHECK(count == ACROBOTS); \
+    to_draws(&how, draws, COUNT(draws) / 5); \
+    ACCEPTED(acrobot_batch_init( \
+        memory, sizeof memory, ACROBOTS, ACROBOT_TASK_BALANCE, false, 0, &holder)); \
+    ACCEPTED(acrobot_batch_set_instrument_draws(holder, &how, NULL)); \
+    for (size_t i = 0; i < ACROBOTS; i++) { \
+        own.encoder_zero2 = (float)zeros[i]; \
+        ACCEPTED(acrobot_batch_set_instruments(holder, i, &own, NULL)); \
+    } \
+    ACCEPTED(acrobot_batch_reset_with(holder, seeded(seed, COUNT(seed)), NULL)); \
+    for (size_t i = 0; i < COUNT(torques); i += ACROBOTS) { \
+        to_floats(inputs, torques + i, ACROBOTS); \
+        ACCEPTED(acrobot_batch_step_torque(holder, inputs, &results, ACROBOTS)); \
+        COMPARE(rewards); \
+        COMPARE(rows); \
+    } \
+    for (size_t i = 0; i < ACROBOTS; i++) { \
+        ACCEPTED(acrobot_batch_instruments(holder, i, &own)); \
+        COMPARE(own); \
+    } \
     SNAPSHOT(acrobot_batch_save, holder)
+#else
+#define instruments() \
+    (void)seed, (void)draws, (void)zeros, (void)count, (void)torques, (void)snapshot; \
+    expected = expected_end
+#endif
 
 // A result of parameters and a state.
 #define GET(type, function, ...) \

@@ -30,6 +30,12 @@ const ARRAYS = {
   torques: [Float32Array, 1],
 };
 
+export function checkIndex({ count }, index) {
+  if (!Number.isInteger(index) || index < 0 || index >= count) {
+    throw invalid(`index must be an integer from 0 to ${count - 1}`, index);
+  }
+}
+
 export class Batch extends Kept {
   static kind = "batch";
 
@@ -159,12 +165,6 @@ export class Batch extends Kept {
     this.#stale = false;
   }
 
-  #checkIndex(index) {
-    if (!Number.isInteger(index) || index < 0 || index >= this.count) {
-      throw invalid(`index must be an integer from 0 to ${this.count - 1}`, index);
-    }
-  }
-
   get count() {
     return this.#settings.count;
   }
@@ -235,12 +235,12 @@ export class Batch extends Kept {
   }
 
   stateOf(index) {
-    this.#checkIndex(index);
+    checkIndex(this, index);
     return unpack(read("acrobot_batch_state", addressOf(this), index).numbers, STATE);
   }
 
   setStateOf(index, state) {
-    this.#checkIndex(index);
+    checkIndex(this, index);
     const [given, words] = readAll("state", state, STATE);
     call(given, "acrobot_batch_set_state", this, index, words);
     this.#stale = true;
@@ -267,7 +267,7 @@ export class Batch extends Kept {
   }
 
   elapsedStepsOf(index) {
-    this.#checkIndex(index);
+    checkIndex(this, index);
     return read("acrobot_batch_elapsed_steps", addressOf(this), index).integers[0];
   }
 
@@ -276,7 +276,7 @@ export class Batch extends Kept {
   }
 
   paramsOf(index) {
-    this.#checkIndex(index);
+    checkIndex(this, index);
     return unpack(paramsOf("acrobot_batch_params", this, index), PARAMS);
   }
 
@@ -286,7 +286,7 @@ export class Batch extends Kept {
   }
 
   setParamsOf(index, changes) {
-    this.#checkIndex(index);
+    checkIndex(this, index);
     this.#setParams([index], readChanges(changes));
   }
 

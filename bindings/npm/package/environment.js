@@ -1,10 +1,10 @@
 // What acrobots and batches share.
 
-import { call, elements, indexOf, readChanges } from "./kept.js";
+import { call, elements, empty, indexOf, readChanges } from "./kept.js";
 import { STRUCTS, TASKS } from "./layout.js";
 import { checked, invalid, positive, randomSeed, seedWords } from "./wasm.js";
 
-const { acrobot_draw_t: DRAW, acrobot_params_t: PARAMS } = STRUCTS;
+const { acrobot_draw_t: DRAW, acrobot_params_t: { dynamics, ...DRAWN } } = STRUCTS;
 
 /** The kinds of draws in the order of acrobot.h, with the fields of their numbers. */
 const DRAWS = {
@@ -30,13 +30,13 @@ export function readOptions(options, names = []) {
   return { ...given, ...checks, seed, draws: draws === undefined ? undefined : readDraws(draws) };
 }
 
-/** The caller's numbers of draws, by parameters, and the words of the struct. */
-export function readDraws(draws) {
-  const given = checked("draws", draws, Object.keys(PARAMS).slice(0, -1));
-  const words = new Float32Array(5 * PARAMS.dynamics[0]);
+/** The caller's numbers of draws, by the fields of a struct, and the words of theirs. */
+export function readDraws(draws, what = "draws", struct = DRAWN) {
+  const given = checked(what, draws, Object.keys(struct));
+  const words = new Float32Array(5 * empty(struct).length);
   const kinds = new Int32Array(words.buffer);
   for (const [name, value] of Object.entries(given)) {
-    const [at, count] = PARAMS[name];
+    const [at, count] = struct[name];
     const all = count === 1 ? [value] : elements(name, value, count, () => true);
     given[name] = all.flatMap((each, i) => {
       const [kind, numbers] = readDraw(count === 1 ? name : `${name}[${i}]`, each);

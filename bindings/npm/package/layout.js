@@ -100,4 +100,9 @@ export const STRUCTS = {
   acrobot_batch_settings_t: {
     count: [0, 1], task: [1, 1], ownParams: [2, 1], autoreset: [3, 1], maxSteps: [4, 1],
   },
+  acrobot_instruments_t: {
+    actionDelay: [0, 1], observationDelay: [1, 1], motorLag: [2, 1], torqueError: [3, 1],
+    angleNoise: [4, 1], encoderZero1: [5, 1], encoderZero2: [6, 1], encoderCounts: [7, 1],
+    velocityFilter: [8, 1],
+  },
 };

@@ -6,6 +6,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { Acrobot, Batch } from "../dist/index.js";
+import { Batch as Measured } from "../dist/instruments.js";
 import { camelCase } from "../package/wasm.js";
 import { assertRejected } from "./module.mjs";
 
@@ -78,6 +79,30 @@ const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 
 const DRAW =
   "mass1 must be drawn by [low, high], { logUniform: [low, high] }, " +
   '{ normal: [mean, std, low, high] } or "fixed"';
+
+test("instruments outside their ranges are rejected, and nothing changes", () => {
+  const batch = new Measured({ seed: 1, count: 2, instruments: { encoderZero1: 0.5 } });
+  const before = batch.snapshot();
+  const set = (instruments) => () => batch.setInstruments(instruments);
+  const one = (instruments) => () => batch.setInstrumentsOf(1, instruments);
+  const draw = (draws) => () => batch.setInstrumentDraws(draws);
+  const DELAY = "actionDelay must be drawn uniformly from whole numbers up to DELAY, in steps";
+  const names = Object.keys(batch.instrumentsOf(0));
+  const rows = [
+    ["RangeError", DELAY, ["9", set({ actionDelay: 9 })], ["1.5", one({ actionDelay: 1.5 })],
+      ["1", draw({ actionDelay: { logUniform: [1, 2] } })]],
+    ["RangeError", "motorLag must be from 0 to 1000 s", ["-1", set({ motorLag: -1 })],
+      ["NaN", one({ motorLag: NaN })], ["2000", draw({ motorLag: [0, 2000] })]],
+    ["TypeError", `instruments must be among ${names.join(", ")}`, ["mass1", set({ mass1: 1 })]],
+    ["TypeError", `instrumentDraws must be among ${names.join(", ")}`, ["lag", draw({ lag: 1 })]],
+    ["RangeError", "index must be an integer from 0 to 1", ["2", () => batch.instrumentsOf(2)],
+      ["-1", () => batch.setInstrumentsOf(-1, {})]],
+    ["TypeError", "count must be an integer from 1 to 2^32 - 1",
+      ["undefined", () => new Measured({})]],
+    ["TypeError", "options must be a plain object", ["3", () => new Measured(3)]],
+  ];
+  assertRejected(rows, () => assert.deepEqual(batch.snapshot(), before));
+});
 
 test("other arguments are rejected with the value and the rule, and nothing changes", () => {
   const acrobot = new Acrobot({ seed: 1 });

@@ -6,6 +6,7 @@ import { test } from "node:test";
 
 import * as control from "../dist/control.js";
 import { Acrobot, Batch } from "../dist/index.js";
+import { Batch as Measured } from "../dist/instruments.js";
 import { STRUCTS, TASKS } from "../package/layout.js";
 
 function rowsOf(numbers, width) {
@@ -28,12 +29,9 @@ const HANGING = stateOf([0, 0, 0, 0]);
 const UPRIGHT = stateOf([Math.PI, 0, 0, 0]);
 
 /** Draws, by their kind. */
-function drawsOf(rows) {
-  const draws = rowsOf(rows, 5).map(([kind, low, high, mean, std]) =>
+const drawsOf = (rows) =>
+  rowsOf(rows, 5).map(([kind, low, high, mean, std]) =>
     ["fixed", [low, high], { logUniform: [low, high] }, { normal: [mean, std, low, high] }][kind]);
-  const { torques, ...others } = machine(draws);
-  return { ...others, torques };
-}
 
 const seedOf = ([low, high = 0]) => BigInt(low) + (BigInt(high) << 32n);
 /** The numbers in arrays of arrays. */
@@ -52,7 +50,8 @@ const modelOf = (call) => ({ params, state, torque, ...others }) =>
 
 const CALLS = {
   episode({ task, seed, draws, torques, snapshot }) {
-    const acrobot = new Acrobot({ task: TASKS[task], draws: drawsOf(draws), seed: seedOf(seed) });
+    const options = { task: TASKS[task], draws: machine(drawsOf(draws)) };
+    const acrobot = new Acrobot({ ...options, seed: seedOf(seed) });
     const steps = torques.flatMap((torque) => {
       const { observation, reward } = acrobot.stepTorque(torque);
       return [...observation, reward];
@@ -61,7 +60,7 @@ const CALLS = {
     return [...numbersOf(acrobot.params), ...steps];
   },
   batch({ task, seed, draws, count, max_steps: maxSteps, torques, snapshot }) {
-    const options = { task: TASKS[task], draws: drawsOf(draws), seed: seedOf(seed) };
+    const options = { task: TASKS[task], draws: machine(drawsOf(draws)), seed: seedOf(seed) };
     const batch = new Batch({ ...options, count, maxSteps, autoreset: "SameStep" });
     const steps = rowsOf(torques, count).flatMap((each) => {
       const { rewards, observations } = batch.stepTorque(each);
@@ -69,6 +68,20 @@ const CALLS = {
     });
     assert.deepEqual([...batch.snapshot()], snapshot);
     return steps;
+  },
+  instruments({ seed, draws, zeros, count, torques, snapshot }) {
+    const instrumentDraws = named("acrobot_instruments_t", drawsOf(draws));
+    const batch = new Measured({ task: "balance", count, instrumentDraws });
+    zeros.forEach((encoderZero2, i) => batch.setInstrumentsOf(i, { encoderZero2 }));
+    batch.reset(seedOf(seed));
+    const steps = rowsOf(torques, count).flatMap((each) => {
+      const { rewards, observations } = batch.stepTorque(each);
+      return [...rewards, ...observations];
+    });
+    assert.deepEqual([...batch.snapshot()], snapshot);
+    const restored = Measured.restore(Uint8Array.from(snapshot));
+    restored.setInstrumentDraws({ actionDelay: "fixed" }); // Nothing changes until a reset.
+    return [...steps, ...zeros.flatMap((_, i) => numbersOf(restored.instrumentsOf(i)))];
   },
   derivative: modelOf((...given) => numbersOf(control.derivative(...given))),
   mass_matrix: modelOf((state, _, params) => flat(control.massMatrix(state, params))),

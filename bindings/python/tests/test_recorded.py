@@ -38,15 +38,24 @@ def flat(*results):
     return np.concatenate([np.ravel(each) for each in results])
 
 
-def batch(row, env):
-    """Torques that are not clipped. In a swing-up the action 1 is 2 N m."""
+def draws_of(row, names):
     draws = {}
-    for name, (kind, low, high, mean, std) in zip(COLUMNS, np.reshape(row["draws"], (-1, 5))):
+    for name, (kind, low, high, mean, std) in zip(names, np.reshape(row["draws"], (-1, 5))):
         if kind:
             others = {"mean": mean, "std": std} if kind == 3 else {}
             draws[name] = (Uniform, LogUniform, MyNormal)[int(kind) - 1](
                 low=low, high=high, **others
             )
+    return draws
+
+
+def seed_of(row):
+    return sum(word << 32 * i for i, word in enumerate(row["seed"]))
+
+
+def batch(row, env):
+    """Torques that are not clipped. In a swing-up the action 1 is 2 N m."""
+    draws = draws_of(row, COLUMNS)
     kind = (AcrobotContinuousVectorEnv, AcrobotSwingupVectorEnv, AcrobotBalanceVectorEnv)[
         row["task"]
     ]
@@ -54,7 +63,7 @@ def batch(row, env):
     torques = envs.AVAIL_TORQUE
     if row["task"] == 0:
         envs.AVAIL_TORQUE = [-2.0, 0.0, 2.0]
-    envs.reset(seed=sum(word << 32 * i for i, word in enumerate(row["seed"])))
+    envs.reset(seed=seed_of(row))
     scale = 2 if row["task"] == 1 else 1
     actions = np.float32(row["torques"]).reshape(-1, row["count"], 1) / scale
     results = [flat(*envs.step(action)[1::-1]) for action in actions]
@@ -62,6 +71,18 @@ def batch(row, env):
     snapshot = bytes(row["snapshot"][:-4])  # without its checksum
     assert snapshot in envs._native.__getstate__()
     return flat(*results)
+
+
+def instruments(row, env):
+    names = AcrobotEnv._INSTRUMENTS
+    drawn = draws_of(row, names)
+    envs = AcrobotBalanceVectorEnv(row["count"], **drawn, encoder_zero_2=row["zeros"])
+    envs.reset(seed=seed_of(row))
+    actions = np.float32(row["torques"]).reshape(-1, row["count"], 1)
+    results = [flat(*envs.step(action)[1::-1]) for action in actions]
+    assert bytes(row["snapshot"][:-4]) in envs._native.__getstate__()
+    numbers = [envs.get_parameter(name) for name in names]
+    return flat(*results, np.transpose(numbers))
 
 
 def model(row, env):
@@ -139,7 +160,8 @@ def mpc(row, env):
     return flat(torques, *controller.report)
 
 
-REPLAYS = {each.__name__: each for each in (batch, plan, swing_up, estimate, identify)}
+REPLAYS = (batch, instruments, plan, swing_up, estimate, identify)
+REPLAYS = {each.__name__: each for each in REPLAYS}
 REPLAYS["control"] = mpc
 
 
