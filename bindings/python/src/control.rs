@@ -1,6 +1,7 @@
 //! What `acrobot_rs.control` computes: functions, each for many states at once, and plans.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
+use acrobot::batch::VecBatch;
 use acrobot::control::model::{LinearModel, StepModel};
 use acrobot::control::plan::{self, Cost, Knot, Plan, Problem};
 use acrobot::control::regulator::{self, Feedback, Lqe, Lqr, dlqe, dlqr, lqr, tvlqr};
@@ -14,7 +15,7 @@ use pyo3::types::PyTuple;
 
 use crate::batch::parse;
 use crate::single::{Acrobot, One};
-use crate::{NAMES, Params, alone, held, invalid, named, rejected, wrong};
+use crate::{NAMES, Params, alone, held, invalid, named, places, rejected, wrong};
 
 /// Applies a function to each row of inputs. Returns the results of all rows.
 #[pyfunction]

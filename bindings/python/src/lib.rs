@@ -44,7 +44,7 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::control::{Planner, SwingUp, compute, plan_torque};
+    use super::control::{Planner, SwingUp, compute, plan_torque, steps};
     #[pymodule_export]
     use super::estimate::{Estimator, calibrate, identify};
     #[pymodule_export]
