@@ -31,8 +31,8 @@ def step(
     >>> import acrobot_rs.torch
     >>> torque = torch.zeros((), requires_grad=True)
     >>> acrobot_rs.torch.step(torch.zeros(4), torque)[3].backward()
-    >>> round(torque.grad.item(), 2)
-    0.41
+    >>> round(torque.grad.item(), 2)  # rad/s per N m
+    0.33
     """
     given = {} if params is None else params
     state = torch.as_tensor(state)

@@ -78,10 +78,10 @@ def steps(
 
     Torque noise is left out.
     """
-    given = {"state": state, "torque": torque, **({} if params is None else params)}
-    names = [*given][2:]
-    if unknown := next((name for name in names if name not in _DIFFERENTIABLE), None):
-        raise must_be("params", f"a dict of {', '.join(_DIFFERENTIABLE)}", repr(unknown))
+    named = {} if params is None else params
+    if not isinstance(named, Mapping) or named.keys() - set(_DIFFERENTIABLE):
+        raise must_be("params", f"a dict of {', '.join(_DIFFERENTIABLE)}", repr(params))
+    given, names = {"state": state, "torque": torque, **named}, [*named]
     known = {name: _INPUTS.get(name, ((), "a finite number of its unit")) for name in given}
     arrays = {name: finite(name, known[name][1], x, None) for name, x in given.items()}
     others, rows = _rows(arrays, {name: axes for name, (axes, _) in known.items()})
