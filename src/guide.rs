@@ -38,6 +38,7 @@ pages! {
     python_control "python-control.md",
     python_many "python-many.md",
     python_parameters "python-parameters.md",
+    gradients "gradients.md",
     languages "languages.md",
     numbers "numbers.md",
     parity "parity.md",
