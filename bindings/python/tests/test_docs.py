@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 
 
-NAMES = "python", "python-control", "python-many", "python-parameters", "swingup"
+NAMES = "python", "python-control", "python-many", "python-parameters", "swingup", "gradients"
 PAGES = ["README.md", "bindings/python/README.md", *(f"docs/{name}.md" for name in NAMES)]
 
 

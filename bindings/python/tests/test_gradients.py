@@ -6,7 +6,6 @@
 import acrobot_rs
 import numpy as np
 import pytest
-import test_docs
 from acrobot_rs import control
 from numpy.testing import assert_allclose
 
@@ -70,8 +69,3 @@ def test_a_clamped_velocity_has_no_gradient_and_nothing_is_nan():
     assert np.isfinite(slopes).all()
     fast = np.abs(control.model.steps(states, 1.0, ENV, None)[:, 2]) == 3.0
     assert fast.sum() > 900 and not slopes[fast, 2].any()
-
-
-def test_the_code_of_the_page(capsys, tmp_path, monkeypatch):
-    test = test_docs.test_code_runs_and_prints_what_its_comments_say
-    test("docs/gradients.md", capsys, tmp_path, monkeypatch)
