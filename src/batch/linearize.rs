@@ -20,9 +20,9 @@ impl<A: Arithmetic, S: Storage<A, N, T::Memory>, T: Task, const N: usize> Batch<
     /// Linearizes one step of each acrobot about its state and a torque, N m: `models` are
     /// bit-identical to those of
     /// [`Pendulum::linearize_step`](crate::physics::Pendulum::linearize_step). `by_params` gets the
-    /// derivatives of the state after the step by each parameter: by the actions' torques and the
-    /// torque noise, which do not act on this step, they are 0. The width of Coulomb friction counts
-    /// as constant.
+    /// derivatives of the state after the step by each parameter. Those by the torques of actions
+    /// and by the torque noise are 0, because they do not act on this step. The width of Coulomb
+    /// friction counts as constant.
     ///
     /// ```
     /// # use acrobot::Fast;

@@ -57,7 +57,9 @@ def test_a_step_is_linearized_by_any_parameter():
     assert A.shape == (2, 3, 4, 4) and B.shape == (2, 3, 4, 1) and [*by_params] == [*given]
     for name, slopes in by_params.items():
         more, less = ({**given, name: given[name] + h} for h in (1e-6, -1e-6))
-        rise = control.model.steps(states, 0.5, ENV, more) - control.model.steps(states, 0.5, ENV, less)
+        rise = control.model.steps(states, 0.5, ENV, more) - control.model.steps(
+            states, 0.5, ENV, less
+        )
         assert_allclose(slopes, rise / 2e-6, rtol=1e-6, atol=1e-8)
     clamped = np.abs(control.model.steps(states, 0.5, ENV, given)[..., 3]) == 2.0
     assert clamped.any() and (by_params["MAX_VEL_2"][clamped, 3] ** 2 == 1.0).all()
@@ -143,11 +145,19 @@ def std(**parameter_std):
         *((lambda x=x: PLANNER.plan(REST, steps=9, seed=x), "seed .* least 0") for x in (-1, True)),
         *((lambda x=x: PLAN[x], "a slice without gaps") for x in (5, slice(None, None, 2))),
         *((lambda x=x: std(**{x: -1}), rf"\['{x}'\] must .*, got -1") for x in ESTIMATED),
-        *((lambda x=x: control.linearize_step(REST, params={x: 1.0}), "params must be a dict of LI")
-          for x in ("AVAIL_TORQUE", "torque_noise_max", "book_or_nips")),
+        *(
+            (
+                lambda x=x: control.linearize_step(REST, params={x: 1.0}),
+                "params must be a dict of LI",
+            )
+            for x in ("AVAIL_TORQUE", "torque_noise_max", "book_or_nips")
+        ),
         (lambda: control.linearize_step(REST, params={"dt": [0.1, -1]}), r"dt\[1\] must .* got -1"),
         (lambda: control.linearize_step(REST, params={"dt": "x"}), "dt must be a finite number"),
-        (lambda: control.linearize_step([0, 0, 1e200, 0]), "a must be finite in each element, got NaN"),
+        (
+            lambda: control.linearize_step([0, 0, 1e200, 0]),
+            "a must be finite in each element, got NaN",
+        ),
         (lambda: std(dt=1), r"parameter_std must be a dict of LINK_MASS_1, .* got \{'dt': 1\}"),
     ],
 )

@@ -33,7 +33,11 @@ def chain():
     for torque in TORQUES:
         models.append(control.linearize_step(states, torque, ENV, PARAMS))
         states = control.model.steps(states, torque, ENV, PARAMS)
-    slope, by_torques, by_params = np.tile(np.arange(1.0, 5.0), (8, 1)), [], dict.fromkeys(PARAMS, 0)
+    slope, by_torques, by_params = (
+        np.tile(np.arange(1.0, 5.0), (8, 1)),
+        [],
+        dict.fromkeys(PARAMS, 0),
+    )
     for A, B, by_step in models[::-1]:
         by_torques.insert(0, np.einsum("ij,ijk->i", slope, B))
         by_params = {name: by_params[name] + np.sum(slope * x) for name, x in by_step.items()}
