@@ -9,6 +9,7 @@ mod block;
 mod buffers;
 mod inputs;
 mod lane_params;
+mod linearize;
 mod member;
 mod params;
 mod reset;

@@ -39,6 +39,7 @@ pages! {
     python_firmware "python-firmware.md",
     python_many "python-many.md",
     python_parameters "python-parameters.md",
+    gradients "gradients.md",
     languages "languages.md",
     numbers "numbers.md",
     parity "parity.md",

@@ -8,6 +8,7 @@ pub mod sines;
 mod zeros;
 
 pub use lanes::{Lanes, Numbers};
+pub(crate) use lanes::{lanes, pair, set_lanes};
 pub(crate) use real::sealed;
 pub use real::{Real, SinCos};
 pub(crate) use simd::Kernel;

@@ -28,9 +28,9 @@ use crate::task::{Memory, Observation, Pose, ResetBounds, Task, episode};
 #[repr(C, align(64))]
 pub struct Block<A: Arithmetic = Fast, const N: usize = 16, M: Memory = ()> {
     /// θ1, θ2, θ̇1 and θ̇2.
-    y: [Lanes<A::Scalar, N>; 4],
+    pub(super) y: [Lanes<A::Scalar, N>; 4],
     /// Sines and cosines of θ1 and θ2, for the observation and the next step.
-    sin_cos: [SinCos<Lanes<A::Scalar, N>>; 2],
+    pub(super) sin_cos: [SinCos<Lanes<A::Scalar, N>>; 2],
     elapsed_steps: [u32; N],
     /// Whether the lane's episode has ended and it waits for a reset.
     done: [bool; N],

@@ -39,14 +39,15 @@ impl<A: Arithmetic, const N: usize> LaneParams<A, N> {
     /// The same model in all lanes.
     #[inline(always)]
     pub(super) fn shared(model: &Model<A::Scalar>) -> Self {
-        let model = model.zip(model, |_, x| Lanes([x; N]));
+        let model = model.zip(model, |_, x| Lanes([*x; N]));
         Self { model }
     }
 
     /// Replaces the parameters of a lane by valid ones.
     pub(super) fn set(&mut self, lane: usize, params: Params<A::Scalar>) {
-        let replace = |mut lanes: Lanes<_, N>, x| {
-            set(&mut lanes.0, lane, x);
+        let replace = |lanes: &Lanes<_, N>, x: &A::Scalar| {
+            let mut lanes = *lanes;
+            set(&mut lanes.0, lane, *x);
             lanes
         };
         self.model = self.model.zip(&model::<A>(params), replace);
@@ -54,7 +55,9 @@ impl<A: Arithmetic, const N: usize> LaneParams<A, N> {
 
     /// The parameters of a lane below `N`.
     pub(super) fn get(&self, lane: usize) -> Params<A::Scalar> {
-        let number = |lanes: Lanes<A::Scalar, N>, _| *lanes.0.get(lane).unwrap_or(&A::Scalar::ZERO);
+        let number = |lanes: &Lanes<A::Scalar, N>, _: &A::Scalar| {
+            *lanes.0.get(lane).unwrap_or(&A::Scalar::ZERO)
+        };
         let Model { params, constants } =
             self.model.zip(&const { default_model::<A, Defaults>() }, number);
         Params {

@@ -1,9 +1,10 @@
 //! Linear models and inverse dynamics: methods of [`Pendulum`](crate::physics::Pendulum).
 
+pub(crate) mod by_params;
 mod inverse_dynamics;
 mod linear_model;
 pub(super) mod partials;
-pub(super) mod step_model;
+pub(crate) mod step_model;
 
 pub use inverse_dynamics::Forces;
 pub use linear_model::LinearModel;

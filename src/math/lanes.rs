@@ -249,3 +249,27 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
         numbers
     }
 }
+
+/// Lane `i` of some numbers.
+#[inline(always)]
+pub fn lanes<S: Real, V: Numbers<S>, const K: usize>(x: &[V; K], i: usize) -> [S; K] {
+    let mut lanes = [S::ZERO; K];
+    for (lane, x) in lanes.iter_mut().zip(x) {
+        *lane = x.lane(i);
+    }
+    lanes
+}
+
+/// Sets lane `i` of some numbers.
+#[inline(always)]
+pub fn set_lanes<S: Real, V: Numbers<S>, const K: usize>(places: &mut [V; K], i: usize, x: [S; K]) {
+    for (place, x) in places.iter_mut().zip(x) {
+        place.set_lane(i, x);
+    }
+}
+
+/// Lane `i` of a pair.
+#[inline(always)]
+pub fn pair<S: Real, V: Numbers<S>>((x, y): &(V, V), i: usize) -> (S, S) {
+    (x.lane(i), y.lane(i))
+}

@@ -57,21 +57,21 @@ impl<V: Copy> Model<V> {
     pub(crate) fn zip<W: Copy, X>(
         &self,
         other: &Model<W>,
-        f: impl Fn(V, W) -> X + Copy,
+        f: impl Fn(&V, &W) -> X + Copy,
     ) -> Model<X> {
         let (one, two) = (&self.constants, &other.constants);
-        let ([a, b, c, d, e], [v, w, x, y, z]) = (one.own, two.own);
+        let ([a, b, c, d, e], [v, w, x, y, z]) = (&one.own, &two.own);
         Model {
             params: self.params.zip(&other.params, f),
             constants: Constants {
-                nips: f(one.nips, two.nips),
-                coupling: f(one.coupling, two.coupling),
-                link2: f(one.link2, two.link2),
-                gravity1: f(one.gravity1, two.gravity1),
-                gravity2: f(one.gravity2, two.gravity2),
-                half_dt: f(one.half_dt, two.half_dt),
-                sixth_dt: f(one.sixth_dt, two.sixth_dt),
-                inverse_width: f(one.inverse_width, two.inverse_width),
+                nips: f(&one.nips, &two.nips),
+                coupling: f(&one.coupling, &two.coupling),
+                link2: f(&one.link2, &two.link2),
+                gravity1: f(&one.gravity1, &two.gravity1),
+                gravity2: f(&one.gravity2, &two.gravity2),
+                half_dt: f(&one.half_dt, &two.half_dt),
+                sixth_dt: f(&one.sixth_dt, &two.sixth_dt),
+                inverse_width: f(&one.inverse_width, &two.inverse_width),
                 own: [f(a, v), f(b, w), f(c, x), f(d, y), f(e, z)],
             },
         }

@@ -129,7 +129,7 @@ impl<S: Real> Params<S> {
     #[must_use]
     #[inline]
     pub fn cast<T: Real>(&self) -> Params<T> {
-        self.zip(self, |x, _| T::from_f64(x.to_f64()))
+        self.map(|x| T::from_f64(x.to_f64()))
     }
 
     /// Sets the inertias of both links about their joints, kg m². One that is too small for the
@@ -239,36 +239,49 @@ impl<S: Copy> Params<S> {
         ]
     }
 
+    /// Applies `f` to each number, in the order of the fields.
+    ///
+    /// ```
+    /// use acrobot::Params;
+    ///
+    /// let doubled = Params::<f64>::DEFAULT.map(|x| 2.0 * x);
+    /// assert_eq!(doubled.length1, 2.0); // m
+    /// ```
+    #[must_use]
+    pub fn map<T>(&self, mut f: impl FnMut(S) -> T) -> Params<T> {
+        self.zip(self, |x, _| f(*x))
+    }
+
     /// Applies `f` to each pair of numbers, in the order of the fields. The dynamics are those of
     /// `self`.
     #[inline(always)]
     pub(crate) fn zip<T: Copy, U>(
         &self,
         other: &Params<T>,
-        mut f: impl FnMut(S, T) -> U,
+        mut f: impl FnMut(&S, &T) -> U,
     ) -> Params<U> {
-        let ([negative, zero, positive], torques) = (self.torques, other.torques);
+        let ([negative, zero, positive], torques) = (&self.torques, &other.torques);
         Params {
-            length1: f(self.length1, other.length1),
-            length2: f(self.length2, other.length2),
-            mass1: f(self.mass1, other.mass1),
-            mass2: f(self.mass2, other.mass2),
-            center_of_mass1: f(self.center_of_mass1, other.center_of_mass1),
-            center_of_mass2: f(self.center_of_mass2, other.center_of_mass2),
-            inertia1: f(self.inertia1, other.inertia1),
-            inertia2: f(self.inertia2, other.inertia2),
-            gravity: f(self.gravity, other.gravity),
-            dt: f(self.dt, other.dt),
-            max_velocity1: f(self.max_velocity1, other.max_velocity1),
-            max_velocity2: f(self.max_velocity2, other.max_velocity2),
-            torques: [f(negative, torques[0]), f(zero, torques[1]), f(positive, torques[2])],
-            torque_noise: f(self.torque_noise, other.torque_noise),
+            length1: f(&self.length1, &other.length1),
+            length2: f(&self.length2, &other.length2),
+            mass1: f(&self.mass1, &other.mass1),
+            mass2: f(&self.mass2, &other.mass2),
+            center_of_mass1: f(&self.center_of_mass1, &other.center_of_mass1),
+            center_of_mass2: f(&self.center_of_mass2, &other.center_of_mass2),
+            inertia1: f(&self.inertia1, &other.inertia1),
+            inertia2: f(&self.inertia2, &other.inertia2),
+            gravity: f(&self.gravity, &other.gravity),
+            dt: f(&self.dt, &other.dt),
+            max_velocity1: f(&self.max_velocity1, &other.max_velocity1),
+            max_velocity2: f(&self.max_velocity2, &other.max_velocity2),
+            torques: [f(negative, &torques[0]), f(zero, &torques[1]), f(positive, &torques[2])],
+            torque_noise: f(&self.torque_noise, &other.torque_noise),
             dynamics: self.dynamics,
-            damping1: f(self.damping1, other.damping1),
-            damping2: f(self.damping2, other.damping2),
-            coulomb1: f(self.coulomb1, other.coulomb1),
-            coulomb2: f(self.coulomb2, other.coulomb2),
-            rotor: f(self.rotor, other.rotor),
+            damping1: f(&self.damping1, &other.damping1),
+            damping2: f(&self.damping2, &other.damping2),
+            coulomb1: f(&self.coulomb1, &other.coulomb1),
+            coulomb2: f(&self.coulomb2, &other.coulomb2),
+            rotor: f(&self.rotor, &other.rotor),
         }
     }
 }

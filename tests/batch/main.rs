@@ -2,6 +2,7 @@
 //! `i`-th child, with shared parameters and with its own. `cargo test -p properties` tries calls in
 //! any order.
 
+mod linearize;
 mod slices;
 mod snapshots;
 mod steps;

@@ -60,6 +60,8 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 3] {
         let (dynamics, given) = case.split_once(' ').unwrap();
         let x: [f64; 22] = vector(&numbers(given));
         let mut params = Params { dynamics: dynamics_of(dynamics), ..Params::DEFAULT };
+        // No bound clamps a velocity.
+        (params.max_velocity1, params.max_velocity2) = (f64::INFINITY, f64::INFINITY);
         // The fields up to dt, then friction and the rotor.
         let [links @ .., _, _, _, _, _, _, b1, b2, c1, c2, rotor] = params.numbers_mut();
         let places = links.into_iter().chain([b1, b2, c1, c2, rotor]);

@@ -3,6 +3,7 @@
 use std::ffi::CString;
 
 use acrobot::arithmetic::Damped;
+use acrobot::batch::VecBatch;
 use acrobot::control::model::{LinearModel, StepModel};
 use acrobot::control::regulator::{Lqe, Lqr, dlqe, dlqr, lqr, tvlqr};
 use acrobot::physics::Pendulum;
@@ -13,7 +14,7 @@ use pyo3::prelude::*;
 
 use crate::estimate::{Named, named_numbers};
 use crate::single::{Acrobot, One};
-use crate::{Params, alone, invalid, named, rejected, wrong};
+use crate::{Params, alone, invalid, named, places, rejected, wrong};
 
 /// Applies a function to each row of inputs. Returns the results of all rows.
 #[pyfunction]
@@ -115,10 +116,6 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, E
             let LinearModel { a, b } = at(state)?.linearize(torque)?;
             of_model(a, b)
         }
-        ("linearize_step", &[state], &[torque]) => {
-            let StepModel { a, b } = at(state)?.linearize_step(torque)?;
-            of_model(a, b)
-        }
         ("dlqr", &[a1, a2, a3, a4, b, q1, q2, q3, q4], &[r]) => {
             let model = StepModel { a: [a1, a2, a3, a4], b };
             of_regulator(dlqr(&model, &[q1, q2, q3, q4], r)?)
@@ -147,4 +144,59 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, E
         }
         _ => Vec::new(),
     })
+}
+
+/// A step of many acrobots, for rows of a state, a torque and the parameters with these names: the
+/// states after it, or the derivatives by each number of the rows.
+#[pyfunction]
+pub fn steps<'py>(
+    acrobot: &Bound<'py, Acrobot>,
+    rows: PyReadonlyArray2<'py, f64>,
+    names: Vec<String>,
+    linearizes: bool,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let (py, mut params) = (acrobot.py(), alone(acrobot)?.acrobot.params());
+    params.torque_noise = 0.0;
+    let rows = rows.as_slice()?.chunks_exact(rows.shape()[1]);
+    let results: PyResult<_> = py.detach(|| {
+        if rows.len() == 0 {
+            return Ok(Vec::new()); // no batch is empty
+        }
+        let mut batch = VecBatch::<Damped<Portable>>::new(0, rows.len()).map_err(rejected)?;
+        batch.own_params().map_err(rejected)?;
+        let mut torques = Vec::new();
+        for (index, row) in rows.enumerate() {
+            let Some((&state, &[torque, ref values @ ..])) = row.split_first_chunk::<4>() else {
+                return Ok(Vec::new());
+            };
+            let mut own = params;
+            for (name, value) in names.iter().zip(values) {
+                places(name).for_each(|place| *own.numbers_mut()[place] = *value);
+            }
+            batch.set_params(index, own).map_err(|error| invalid(error, Some(index)))?;
+            batch.set_state(index, state.into()).map_err(rejected)?;
+            torques.push(torque);
+        }
+        if !linearizes {
+            batch.step(&torques).map_err(rejected)?;
+            let states = (0..torques.len()).filter_map(|index| batch.state(index).ok());
+            return Ok(states.flat_map(<[f64; 4]>::from).collect());
+        }
+        let mut models = vec![StepModel { a: [[0.0; 4]; 4], b: [0.0; 4] }; torques.len()];
+        let mut by_params = vec![params.map(|_| [0.0; 4]); models.len()];
+        let wanted = (!names.is_empty()).then_some(&mut by_params[..]);
+        batch.linearize_step_into(&torques, &mut models, wanted).map_err(rejected)?;
+        let mut results = Vec::new();
+        for (StepModel { a, b }, by_params) in models.into_iter().zip(by_params) {
+            results.extend([a.as_flattened(), &b].concat());
+            let numbers = by_params.numbers();
+            for name in &names {
+                // Both moments of inertia have a common name.
+                let sum = |i: usize| places(name).map(|place| numbers[place].1[i]).sum::<f64>();
+                results.extend([sum(0), sum(1), sum(2), sum(3)]);
+            }
+        }
+        Ok(results)
+    });
+    Ok(PyArray1::from_vec(py, results?))
 }

@@ -45,7 +45,7 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::control::{compute, fields, params_with};
+    use super::control::{compute, fields, params_with, steps};
     #[pymodule_export]
     use super::estimate::{Estimator, calibrate, identify};
     #[pymodule_export]

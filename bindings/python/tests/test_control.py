@@ -52,6 +52,23 @@ def test_arrays_broadcast():
     assert_allclose(torques, [[[0, 0.1], [0, 0.2], [0, 0.3]]] * 2, atol=1e-13)
 
 
+def test_a_step_is_linearized_by_any_parameter():
+    states = np.random.default_rng(0).uniform(-2, 2, (2, 3, 4))
+    given = {"LINK_MOI": 0.4, "dt": np.array([0.05, 0.1, 0.15]), "MAX_VEL_2": 2.0}
+    A, B, by_params = control.linearize_step(states, 0.5, ENV, given)
+    assert A.shape == (2, 3, 4, 4) and B.shape == (2, 3, 4, 1) and [*by_params] == [*given]
+    for name, slopes in by_params.items():
+        more, less = ({**given, name: given[name] + h} for h in (1e-6, -1e-6))
+        rise = control.model.steps(states, 0.5, ENV, more) - control.model.steps(
+            states, 0.5, ENV, less
+        )
+        assert_allclose(slopes, rise / 2e-6, rtol=1e-6, atol=1e-8)
+    clamped = np.abs(control.model.steps(states, 0.5, ENV, given)[..., 3]) == 2.0
+    assert clamped.any() and (by_params["MAX_VEL_2"][clamped, 3] ** 2 == 1.0).all()
+    assert not A[clamped, 3].any() and A[~clamped, 3].all() and not B[clamped, 3].any()
+    assert control.linearize_step(np.zeros((0, 4)))[0].shape == (0, 4, 4)
+
+
 @pytest.mark.parametrize("name", ["lqr", "dlqr"])
 def test_regulators_have_the_shapes_of_python_control(name):
     """`test_recorded.py` has the numbers."""
@@ -80,7 +97,7 @@ VALUES |= {"W": ONE, "S": [1.0] * 2}
 VALUES |= {"step": 0, "steps": 9, "tries": 1, "seed": 0, "progress": print, "iterations": 1}
 VALUES |= {"plan": PLAN, "plans": [PLAN], "states": [REST]}
 VALUES |= {"velocity_clamp": True, "parameter_std": {}, "elbow": 0.0, "inertias": [1.0] * 2}
-VALUES |= {"path": "plan.rs", "gain": REST, "params": ENV}
+VALUES |= {"path": "plan.rs", "gain": REST, "params": {}}
 VALUES |= SETTINGS | {"controller": CONTROLLER}
 CALLS = [
     *(getattr(control, each) for each in control.__all__ if each[0].islower()),
@@ -138,6 +155,19 @@ def std(**parameter_std):
         *((lambda x=x: PLANNER.plan(REST, steps=9, seed=x), "seed .* least 0") for x in (-1, True)),
         *((lambda x=x: PLAN[x], "a slice without gaps") for x in (5, slice(None, None, 2))),
         *((lambda x=x: std(**{x: -1}), rf"\['{x}'\] must .*, got -1") for x in ESTIMATED),
+        *(
+            (
+                lambda x=x: control.linearize_step(REST, params={x: 1.0}),
+                "params must be a dict of LI",
+            )
+            for x in ("AVAIL_TORQUE", "torque_noise_max", "book_or_nips")
+        ),
+        (lambda: control.linearize_step(REST, params={"dt": [0.1, -1]}), r"dt\[1\] must .* got -1"),
+        (lambda: control.linearize_step(REST, params={"dt": "x"}), "dt must be a finite number"),
+        (
+            lambda: control.linearize_step([0, 0, 1e200, 0]),
+            "a must be finite in each element, got NaN",
+        ),
         (lambda: std(dt=1), r"parameter_std must be a dict of LINK_MASS_1, .* got \{'dt': 1\}"),
     ],
 )

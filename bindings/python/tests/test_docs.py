@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 PYTHON = "control", "firmware", "many", "parameters"
-NAMES = "python", *(f"python-{name}" for name in PYTHON), "swingup"
+NAMES = "python", *(f"python-{name}" for name in PYTHON), "swingup", "gradients"
 PAGES = ["README.md", "bindings/python/README.md", *(f"docs/{name}.md" for name in NAMES)]
 
 

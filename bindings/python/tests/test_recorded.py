@@ -86,7 +86,7 @@ def instruments(row, env):
 
 
 def model(row, env):
-    function, values = getattr(control, row["call"]), row | {"env": env}
+    function, values = getattr(control, row["call"]), row | {"env": env, "params": None}
     if "w" in row:
         A, _ = control.linearize_step(row["state"], row["torque"], env)
         return flat(*function(A, np.reshape(row["w"], (4, 4)), row["s"]))

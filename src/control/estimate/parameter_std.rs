@@ -82,7 +82,7 @@ pub(super) fn estimated<T>(numbers: [T; NUMBERS], instruments: [T; 3]) -> [T; PA
     in_order([mass1, mass2, inertia1, inertia2], friction, instruments, [length1, rotor])
 }
 
-fn in_order<T>(
+pub(super) fn in_order<T>(
     [mass1, mass2, inertia1, inertia2]: [T; 4],
     [damping1, damping2, coulomb1, coulomb2]: [T; 4],
     [zero1, zero2, factor]: [T; 3],

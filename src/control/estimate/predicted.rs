@@ -1,15 +1,15 @@
 //! The covariances after a step: how the state and the parameters at its begin act on its end.
 
 use super::estimator::KalmanFilter;
-use super::parameter_std::{PARAMETERS, ZEROS};
+use super::parameter_std::{ZEROS, in_order};
 use crate::arithmetic::Arithmetic;
 use crate::control::model::LinearModel;
-use crate::control::model::partials::MassMatrix;
+use crate::control::model::partials::{MassMatrix, by_parameters};
 use crate::error::Error;
 use crate::math::Real;
 use crate::math::matrix::{Matrix, add_outer, apply, check_finite, dot, symmetrize, transpose};
 use crate::math::sealed::Sealed as _;
-use crate::physics::{Pendulum, State, coulomb_friction, directions, plus_scaled};
+use crate::physics::{Pendulum, State, plus_scaled};
 
 /// What rounding to `f32` can add to an angle in a step: a standard deviation, rad.
 const IN_A_STEP: f64 = 1e-6;
@@ -70,47 +70,27 @@ impl<A: Arithmetic, const K: usize> KalmanFilter<A, K> {
         Ok(of_state)
     }
 
-    /// The derivatives of the accelerations \[a1, a2\] of a motion by each parameter, times its
+    /// The derivatives of the accelerations of a motion by each parameter, times its
     /// deviation: M⁻¹ (∂f/∂p − ∂M/∂p q̈), as in `partials`.
     fn slopes(
         &self,
         motion: &Pendulum<A>,
-        [a1, a2]: [A::Scalar; 2],
+        accelerations: [A::Scalar; 2],
         sent: A::Scalar,
     ) -> [[A::Scalar; 2]; K] {
-        let (o, one) = (A::Scalar::ZERO, A::Scalar::ONE);
+        let o = A::Scalar::ZERO;
         let mut slopes = [[o; 2]; K];
         if K == 0 {
             return slopes;
         }
         let (model, sines) = (motion.model(), motion.sin_cos());
-        let State { dtheta1: v1, dtheta2: v2, .. } = motion.state();
-        let (params, nips) = (&model.params, model.constants.nips);
-        let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
-        let [_, (sin2, cos2)] = sines;
-        let [weight1, weight2] = directions(sines).map(|(sin, _)| params.gravity * sin);
-        let [coulomb1, coulomb2] = [v1, v2].map(|v| coulomb_friction::<A, A::Scalar>(model, v).0);
-        let (square, sum) = (v1 * v1, v1 + v2);
-        // Of l1 lc2 m2: what the links do to each other.
-        let on_link1 = sin2 * (sum * sum - nips * square) - cos2 * (a1 + a2);
-        let on_link2 = -(sin2 * ((one - nips) * square)) - cos2 * a1;
-        let of_tip = lc2 * on_link1 - weight1 - l1 * a1;
-        let forces: [[A::Scalar; 2]; PARAMETERS] = [
-            [o, o],
-            [o, o],
-            [-(lc1 * (weight1 + lc1 * a1)), o],
-            [l1 * of_tip, lc2 * (l1 * on_link2 - weight2 - lc2 * (a1 + a2))],
-            [-a1, o],
-            [o, -(a1 + a2)],
-            [-v1, o],
-            [v2, -v2],
-            [-coulomb1, o],
-            [coulomb2, -coulomb2],
-            [-sent, sent],
-            [params.mass2 * (of_tip - l1 * a1), params.mass2 * lc2 * on_link2],
-            [a1 + a2, a1],
-        ];
-        let mass = MassMatrix::new::<A>(model, (sin2, cos2));
+        let State { dtheta1, dtheta2, .. } = motion.state();
+        let rates = [dtheta1, dtheta2];
+        let by = by_parameters::<A, A::Scalar>(model, rates, sines, accelerations);
+        let [length1, mass1, mass2, _, _, inertia1, inertia2, _, friction @ .., rotor] = by;
+        let masses = [mass1, mass2, inertia1, inertia2];
+        let forces = in_order(masses, friction, [[o, o], [o, o], [-sent, sent]], [length1, rotor]);
+        let mass = MassMatrix::new::<A>(model, sines[1]);
         for ((slope, forces), parameter) in slopes.iter_mut().zip(forces).zip(&self.parameters) {
             *slope = mass.solve(forces).map(|x| x * parameter.deviation);
         }

@@ -1,8 +1,8 @@
 //! The derivatives of the accelerations.
 
 use crate::arithmetic::Arithmetic;
-use crate::math::{Real, SinCos};
-use crate::physics::{Constants, Model, Modeled, directions, friction};
+use crate::math::{Numbers, Real, SinCos};
+use crate::physics::{Constants, Model, Modeled, coulomb_friction, directions, friction};
 
 /// M of the absolute angles α = θ1 and β = θ1 + θ2, with the rows \[upper, between\] and
 /// \[between, link2\], kg m².
@@ -92,4 +92,47 @@ pub(in crate::control) fn partials<A: Arithmetic>(
     ]
     .map(solve);
     ([ddalpha, ddtheta2], derivatives)
+}
+
+/// How many parameters act on the accelerations.
+pub(in crate::control) const PARAMETERS: usize = 13;
+
+/// ∂f/∂p − ∂M/∂p q̈ of a motion with the accelerations \[a1, a2\], for each parameter.
+#[inline(always)]
+pub(in crate::control) fn by_parameters<A: Arithmetic, V: Numbers<A::Scalar>>(
+    model: &Model<V>,
+    [v1, v2]: [V; 2],
+    sines: [SinCos<V>; 2],
+    [a1, a2]: [V; 2],
+) -> [[V; 2]; PARAMETERS] {
+    let (o, one) = (V::ZEROS, V::splat(A::Scalar::from_f64(1.0)));
+    let (params, nips) = (&model.params, model.constants.nips);
+    let (l1, lc1, lc2) = (params.length1, params.center_of_mass1, params.center_of_mass2);
+    let [_, (sin2, cos2)] = sines;
+    let [(sin1, _), (sin_sum, _)] = directions(sines);
+    let (weight1, weight2) = (params.gravity * sin1, params.gravity * sin_sum);
+    let (coulomb1, _) = coulomb_friction::<A, V>(model, v1);
+    let (coulomb2, _) = coulomb_friction::<A, V>(model, v2);
+    let (square, sum) = (v1 * v1, v1 + v2);
+    // Of l1 lc2 m2: what the links do to each other.
+    let on_link1 = sin2 * (sum * sum - nips * square) - cos2 * (a1 + a2);
+    let on_link2 = -(sin2 * ((one - nips) * square)) - cos2 * a1;
+    let of_tip = lc2 * on_link1 - weight1 - l1 * a1;
+    let of_center2 = l1 * on_link2 - weight2 - lc2 * (a1 + a2);
+    let (m1, m2) = (params.mass1, params.mass2);
+    [
+        [m2 * (of_tip - l1 * a1), m2 * lc2 * on_link2],
+        [-(lc1 * (weight1 + lc1 * a1)), o],
+        [l1 * of_tip, lc2 * of_center2],
+        [-(m1 * (weight1 + (lc1 + lc1) * a1)), o],
+        [m2 * l1 * on_link1, m2 * (of_center2 - lc2 * (a1 + a2))],
+        [-a1, o],
+        [o, -(a1 + a2)],
+        [-((m1 * lc1 + m2 * l1) * sin1), -(m2 * lc2 * sin_sum)],
+        [-v1, o],
+        [v2, -v2],
+        [-coulomb1, o],
+        [coulomb2, -coulomb2],
+        [a1 + a2, a1],
+    ]
 }

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::math::matrix::{check_finite, dot, transpose};
 use crate::math::sealed::Sealed as _;
 use crate::math::{Lanes, Numbers, Real, SinCos};
-use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
+use crate::physics::{Model, Pendulum, check_torque, plus_scaled, step};
 
 /// A linear model of one step of `dt`, x′ = A x + B u: x is the deviation from a state \[θ1, θ2,
 /// θ̇1, θ̇2\], rad and rad/s, x′ that from the state after the step, and u that from a torque, N m,
@@ -35,7 +35,9 @@ impl<A: Arithmetic> Pendulum<A> {
     /// Linearizes one step of `dt` about the state and a torque, N m.
     ///
     /// A and B are the derivatives of the Runge-Kutta step, exact up to rounding, and not a matrix
-    /// exponential. The state need not be an equilibrium.
+    /// exponential. The state need not be an equilibrium. Where the step clamps a velocity at its
+    /// bound, the derivatives of that velocity are 0.
+    /// [`Batch::linearize_step_into`](crate::batch::Batch::linearize_step_into) linearizes many.
     ///
     /// ```
     /// use acrobot::physics::Pendulum;
@@ -52,9 +54,22 @@ impl<A: Arithmetic> Pendulum<A> {
     /// The errors of [`linearize`](Self::linearize).
     #[inline(never)] // saves flash
     pub fn linearize_step(&self, torque: A::Scalar) -> Result<StepModel<A::Scalar>, Error> {
+        let (y, sin_cos) = (self.state().into(), self.sin_cos());
+        let bounds = by_bounds::<A, A::Scalar>(self.model(), y, sin_cos, torque);
+        self.linearize_step_within(torque, bounds)
+    }
+
+    /// As [`linearize_step`](Self::linearize_step), given [`by_bounds`].
+    pub(in crate::control) fn linearize_step_within(
+        &self,
+        torque: A::Scalar,
+        bounds: [A::Scalar; 2],
+    ) -> Result<StepModel<A::Scalar>, Error> {
         check_torque(torque)?;
         let y = self.state().into();
-        let [columns @ .., b] = derivatives_alone::<A>(self.model(), y, self.sin_cos(), torque);
+        let mut columns = derivatives_alone::<A>(self.model(), y, self.sin_cos(), torque);
+        clamp(&mut columns, bounds);
+        let [columns @ .., b] = columns;
         let model = StepModel { a: transpose(&columns), b };
         check_finite("a", model.a.as_flattened())?;
         check_finite("b", &model.b)?;
@@ -78,7 +93,7 @@ pub(in crate::control) fn derivatives_alone<A: Arithmetic>(
 /// A Runge-Kutta step of the equations of motion and of their variational equations: columns of
 /// derivatives by the four numbers of the state before the step and by the torque.
 #[inline(always)]
-pub(in crate::control) fn derivatives<A: Arithmetic, const IN_LANES: bool>(
+pub(crate) fn derivatives<A: Arithmetic, const IN_LANES: bool>(
     model: &Model<A::Scalar>,
     y: [A::Scalar; 4],
     sin_cos: [SinCos<A::Scalar>; 2],
@@ -111,6 +126,33 @@ pub(in crate::control) fn derivatives<A: Arithmetic, const IN_LANES: bool>(
     let stages = stages.next::<A, true>(model, &before, y, torque, half, third);
     let stages = stages.next::<A, true>(model, &before, y, torque, half, third);
     stages.next::<A, true>(model, &before, y, torque, dt, sixth).after
+}
+
+/// The derivatives of the velocities after a step by their bounds: 1 or −1 where they are clamped,
+/// otherwise 0.
+#[inline(always)]
+pub(crate) fn by_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
+    model: &Model<V>,
+    mut y: [V; 4],
+    mut sin_cos: [SinCos<V>; 2],
+    torque: V,
+) -> [V; 2] {
+    step::<A, V>(model, &mut y, &mut sin_cos, torque);
+    let one = A::Scalar::ONE;
+    let side = |x: A::Scalar, bound| match x.abs() < bound {
+        true => A::Scalar::ZERO,
+        false => (x / bound).simd_clamp(-one, one),
+    };
+    [y[2].zip(model.params.max_velocity1, side), y[3].zip(model.params.max_velocity2, side)]
+}
+
+/// Makes the derivatives of velocities that are clamped 0.
+#[inline(always)]
+pub(crate) fn clamp<S: Real, V: Numbers<S>>(columns: &mut [[V; 4]], [side1, side2]: [V; 2]) {
+    let keep = |x, side| if side == S::ZERO { x } else { S::ZERO };
+    for [_, _, x1, x2] in columns {
+        (*x1, *x2) = (x1.zip(side1, keep), x2.zip(side2, keep));
+    }
 }
 
 /// A stage of the Runge-Kutta step: the rates of the state, those of the columns, and the sum of

@@ -11,7 +11,7 @@ use crate::control::model::step_model::{derivatives, derivatives_alone, sin_cos_
 use crate::control::regulator::BoundedRegulator;
 use crate::math::matrix::dot;
 use crate::math::sealed::Sealed as _;
-use crate::math::{Kernel, Numbers, Real, SimdLevel, SinCos};
+use crate::math::{Kernel, Numbers, Real, SimdLevel, SinCos, lanes, pair, set_lanes};
 use crate::physics::{Model, State, plus_scaled, saturate, step, wrap};
 
 /// What the passes know of the machine, and the SIMD instructions that they use.
@@ -61,7 +61,7 @@ impl<A: Arithmetic, V: Numbers<A::Scalar>> Kernel for Forward<'_, A, V> {
         let model = regulator.machine.model();
         let (params, weights, limit) = (model.params, *weights, regulator.limit);
         let by_jump = weights.cost.torque_change;
-        let lanes_model = model.zip(model, |x, _| V::splat(x));
+        let lanes_model = model.zip(model, |x, _| V::splat(*x));
         let orders = *self.orders;
         let mut motion = *self.motion;
         let (mut ends, mut costs) = (motion.y, motion.cost);
@@ -280,30 +280,4 @@ fn look_back<A: Arithmetic, const IN_LANES: bool>(
         to_go[4..].iter_mut().zip(upper).for_each(|(place, q)| *place = *place + *q);
     }
     (Knot { change, gain: by_both.map(|x| x * free), smooth, ..*knot }, to_go, divisor)
-}
-
-/// Lane `i` of some numbers.
-#[inline(always)]
-pub(super) fn lanes<S: Real, V: Numbers<S>, const K: usize>(x: &[V; K], i: usize) -> [S; K] {
-    let mut lanes = [S::ZERO; K];
-    for (lane, x) in lanes.iter_mut().zip(x) {
-        *lane = x.lane(i);
-    }
-    lanes
-}
-
-#[inline(always)]
-pub(super) fn set_lanes<S: Real, V: Numbers<S>, const K: usize>(
-    places: &mut [V; K],
-    i: usize,
-    x: [S; K],
-) {
-    for (place, x) in places.iter_mut().zip(x) {
-        place.set_lane(i, x);
-    }
-}
-
-#[inline(always)]
-fn pair<S: Real, V: Numbers<S>>((sin, cos): &SinCos<V>, i: usize) -> SinCos<S> {
-    (sin.lane(i), cos.lane(i))
 }

@@ -249,7 +249,9 @@ impl<A: Arithmetic> Planner<A> {
         for knot in plan.iter_mut().rev() {
             *knot = Knot { state: knot.state, ..Knot::open(knot.torque) };
             model.set_state(knot.state)?;
-            knot.gain = back_up(&model.linearize_step(knot.torque)?, &q, *r, &mut cost)?;
+            // Of the equations, which the plan was found with: none is clamped.
+            let model = model.linearize_step_within(knot.torque, [A::Scalar::ZERO; 2])?;
+            knot.gain = back_up(&model, &q, *r, &mut cost)?;
         }
         Ok(())
     }

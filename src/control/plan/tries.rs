@@ -6,10 +6,10 @@
 //! pass of a lane that does not wait finds the same change again.
 
 use super::knots::Knot;
-use super::passes::{Backward, Forward, Machine, Motion, Orders, lanes, set_lanes};
+use super::passes::{Backward, Forward, Machine, Motion, Orders};
 use crate::arithmetic::Arithmetic;
 use crate::math::sealed::Sealed as _;
-use crate::math::{Numbers, Real};
+use crate::math::{Numbers, Real, lanes, set_lanes};
 use crate::physics::{State, sin_cos};
 
 /// An iteration counts as stalled if it lowers the cost by less than this part, or not at all. So

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import gymnasium
@@ -17,6 +18,7 @@ from acrobot_rs.env import AcrobotEnv
 Env = gymnasium.Env[Any, Any] | None
 Floats = NDArray[np.float64]
 Pair = tuple[Floats, Floats]
+Params = Mapping[str, ArrayLike] | None
 
 #: Standing upright at rest.
 UPRIGHT = (math.pi, 0.0, 0.0, 0.0)
@@ -53,10 +55,38 @@ def linearize(state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None) -> Pai
     return rows[..., :4, :], rows[..., 4, :, None]
 
 
-def linearize_step(state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None) -> Pair:
-    """A and B of one step of ``dt``, after which x is A x + B u."""
-    rows = _call("linearize_step", (5, 4), env, state=state, torque=torque)
-    return rows[..., :4, :], rows[..., 4, :, None]
+def linearize_step(
+    state: ArrayLike, torque: ArrayLike = 0.0, env: Env = None, params: Params = None
+) -> Any:
+    """A and B of one step of ``dt``, after which x is A x + B u.
+
+    Where the velocity bound clamps, the derivatives of that velocity are 0. With ``params``, arrays
+    by their names that replace the parameters of ``env``, it also returns the derivatives of the
+    next state by each of them, ``(..., 4)``, with the same names.
+    """
+    rows = steps(state, torque, env, params, linearizes=True)
+    model = rows[..., :4, :], rows[..., 4, :, None]
+    if params is None:
+        return model
+    return *model, {name: rows[..., 5 + i, :] for i, name in enumerate(params)}
+
+
+def steps(
+    state: ArrayLike, torque: ArrayLike, env: Env, params: Params, *, linearizes: bool = False
+) -> Floats:
+    """The states after one step, or rows of derivatives by the state, the torque and parameters.
+
+    Torque noise is left out.
+    """
+    named = {} if params is None else params
+    if not isinstance(named, Mapping) or named.keys() - set(_DIFFERENTIABLE):
+        raise must_be("params", f"a dict of {', '.join(_DIFFERENTIABLE)}", repr(params))
+    given, names = {"state": state, "torque": torque, **named}, [*named]
+    known = {name: _INPUTS.get(name, ((), "a finite number of its unit")) for name in given}
+    arrays = {name: finite(name, known[name][1], x, None) for name, x in given.items()}
+    others, rows = _rows(arrays, {name: axes for name, (axes, _) in known.items()})
+    results = _native.steps(acrobot_of(env)._native, rows, names, linearizes)
+    return results.reshape(*others, *((5 + len(names), 4) if linearizes else (4,)))
 
 
 def lqr(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> Pair:
@@ -155,6 +185,12 @@ _INPUTS = {
     **{"torque": ((), "a finite number of N m"), "torques": ((), "finite numbers of N m")},
     "accelerations": ((2,), "finite numbers of rad/s²"),
 }
+#: The parameters of a step that are one number, or two with one name.
+_DIFFERENTIABLE = (
+    *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1"),
+    *("LINK_COM_POS_2", "LINK_MOI", "LINK_MOI_1", "LINK_MOI_2", "gravity", "dt", "MAX_VEL_1"),
+    *("MAX_VEL_2", "DAMPING_1", "DAMPING_2", "COULOMB_1", "COULOMB_2", "ROTOR"),
+)
 #: The inputs that have a first axis of ``n`` steps.
 _OF_STEPS = {"simulate": ("torques",), "tvlqr": ("A", "B")}
 
@@ -170,23 +206,31 @@ def acrobot_of(env: Env, name: str = "env") -> AcrobotEnv:
 def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) -> Floats:
     """Call a native function for each state. A result has this shape, and a row for each step."""
     arrays = {name: finite(name, _INPUTS[name][1], x, None) for name, x in inputs.items()}
-    names, steps, parts = _OF_STEPS.get(function, ()), 0, []
+    names, steps = _OF_STEPS.get(function, ()), 0
     for name in names[:1]:
         axes = _INPUTS[name][0]
         steps = math.prod(arrays[name].shape[: arrays[name].ndim - len(axes)][-1:])
         shape = (shape[0] + steps, *shape[1:])
+    axes = {name: (steps,) * (name in names) + _INPUTS[name][0] for name in arrays}
+    others, rows = _rows(arrays, axes)
+    return _native.compute(function, acrobot_of(env)._native, rows).reshape((*others, *shape))
+
+
+def _rows(
+    arrays: dict[str, Floats], axes: dict[str, tuple[int, ...]]
+) -> tuple[tuple[int, ...], Floats]:
+    """The axes in which arrays broadcast, and a row of the numbers of all arrays for each."""
+    parts = []
     for name, array in arrays.items():
-        axes = (steps,) * (name in names) + _INPUTS[name][0]
-        if array.ndim < len(axes) and array.size == math.prod(axes):
-            array = array.reshape(axes)  # a number or a vector for a matrix
-        others = array.shape[: array.ndim - len(axes)]
-        if array.shape != (*others, *axes):
-            rule = f"an array of shape (..., {', '.join(map(str, axes))})"
+        if array.ndim < len(axes[name]) and array.size == math.prod(axes[name]):
+            array = array.reshape(axes[name])  # a number or a vector for a matrix
+        others = array.shape[: array.ndim - len(axes[name])]
+        if array.shape != (*others, *axes[name]):
+            rule = f"an array of shape (..., {', '.join(map(str, axes[name]))})"
             raise must_be(name, rule, array.shape)
-        parts.append(array.reshape(*others, math.prod(axes)))
-    acrobot = acrobot_of(env)._native
+        parts.append(array.reshape(*others, math.prod(axes[name])))
     if all(part.ndim == 1 for part in parts):  # one state: 6 µs, not 9
-        return _native.compute(function, acrobot, np.concatenate(parts)[None]).reshape(shape)
+        return (), np.concatenate(parts)[None]
     try:
         others = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
     except ValueError:
@@ -196,4 +240,4 @@ def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) 
     rows = np.empty((math.prod(others), ends[-1]))
     for part, end in zip(parts, ends):
         rows.reshape(*others, ends[-1])[..., end - part.shape[-1] : end] = part
-    return _native.compute(function, acrobot, rows).reshape((*others, *shape))
+    return others, rows
