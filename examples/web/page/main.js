@@ -2,15 +2,15 @@
 
 import { Learner, bangBang, energyLaw } from "./acrobot-rs/policies.js";
 import { animationOf } from "./animation.js";
-import { CHARTS, number } from "./charts.js";
 import { connectControls } from "./controls.js";
 import { download } from "./files.js";
 import { FULL, Game, UNITS, isUpright, noisy } from "./game.js";
 import { actionsOf, decodeRun, encodeRun } from "./link.js";
+import { numbersOf } from "./numbers.js";
 import { attempt, parametersPanel } from "./parameters.js";
 import { placesOf } from "./places.js";
 import { minus } from "./plot.js";
-import { BALANCE, DEFAULTS, LIMIT, isSame, parseSeed } from "./settings.js";
+import { BALANCE, DEFAULTS, LIMIT, isSame, machineOf, parseSeed } from "./settings.js";
 import { drawRival, drawStage, placeAt } from "./stage.js";
 import { trainingPanel } from "./training.js";
 
@@ -18,8 +18,6 @@ const $ = (id) => document.getElementById(id);
 
 /** How long a policy's ended episode stays on the screen before the next begins, ms. */
 const INTERVAL = 1500;
-/** The least time between two updates of the numbers and of one plot while it plays, ms. */
-const PERIOD = 30;
 
 function start() {
   const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
@@ -53,6 +51,8 @@ function start() {
   /** The seconds since the acrobot is upright, and the steps before the user took over. */
   let upright = 0;
   let before = 0;
+  /** Whether it is paused because who plays cannot play with these parameters. */
+  let stuck = false;
 
   // ---- the episode
 
@@ -92,7 +92,8 @@ function start() {
       const other = $("rival").value;
       if (other !== "") rival.step(level(other, rival), pushed);
     } catch (error) {
-      return pause(minus(error.message)); // With extreme physics an energy is infinite.
+      pause(minus(error.message)); // With extreme physics an energy is infinite.
+      return (stuck = true);
     }
     upright = isUpright(game.acrobot.state) ? upright + game.params.dt : 0;
     shown = 0;
@@ -131,11 +132,14 @@ function start() {
 
   /** Changes the parameters at once, except where another episode must begin. */
   const setPhysics = (params) => {
-    if (game.steps === 0 || game.end !== null || replayed()) return begin(game.seed, params);
-    for (const each of [game, rival]) each.change(params);
-    shown = params.dt;
-    address();
-    changed();
+    if (game.steps === 0 || game.end !== null || replayed()) begin(game.seed, params);
+    else {
+      for (const each of [game, rival]) each.change(params);
+      shown = params.dt;
+      address();
+      changed();
+    }
+    if (stuck) play();
   };
 
   const reset = () => {
@@ -145,13 +149,13 @@ function start() {
   const next = () => begin(game.seed + 1n);
 
   const play = () => {
-    playing = true;
+    [playing, stuck] = [true, false];
     if (game.end !== null) reset();
     say(player());
     changed();
   };
   const pause = (message) => {
-    playing = false;
+    playing = stuck = false;
     // The picture shows the last step, as the numbers do.
     shown = game.params.dt;
     nextAt = Infinity;
@@ -167,7 +171,12 @@ function start() {
     changed();
   };
 
-  const say = (message) => ($("status").textContent = message);
+  /** What the page says, and what the planner adds. */
+  let [said, thought] = ["", ""];
+  const say = (message, more = thought) => {
+    [said, thought] = [message, more];
+    $("status").textContent = `${message} ${more}`.trim();
+  };
 
   /** Who applies the torque, as a sentence. */
   const player = () => {
@@ -192,6 +201,7 @@ function start() {
     else if (policy !== "keys" && (game.end !== null || game.free)) {
       begin(game.seed, isSame(game.params, BALANCE) ? { ...DEFAULTS } : game.params);
     }
+    $("policy-hint").textContent = $("policy").selectedOptions[0].dataset.hint;
     showParams();
     address();
     if (playing) say(player());
@@ -201,41 +211,8 @@ function start() {
 
   // ---- what the page shows
 
-  let dirty = true;
-  /** Requests an update of everything except the picture, which each frame draws. */
-  const changed = () => (dirty = true);
-
-  /** The same text again would need another layout. */
-  const write = (id, text) => $(id).textContent !== text && ($(id).textContent = text);
-
-  let [updated, turn] = [0, 0];
-  const update = (now) => {
-    [dirty, updated] = [false, now];
-    const charts = playing ? [CHARTS[turn++ % CHARTS.length]] : CHARTS;
-    charts.forEach((show) => show(game));
-    const verdict = ({ steps, end }) =>
-      ({ goal: `Goal! ${steps} steps`, limit: "Out of time" })[end];
-    const rivalVerdict = verdict(rival) ?? String(rival.steps);
-    const texts = {
-      "step": String(game.steps),
-      "return": game.free ? `${upright.toFixed(1)} s` : minus(String(game.return)),
-      "steps-label": game.free ? "Steps" : "Steps (at most 500)",
-      "return-label": game.free ? "Upright for" : "Return",
-      "pause": playing ? "Pause" : "Play",
-      "verdict": verdict(game) ?? "",
-      "rival-label": `Grey: ${$("rival").selectedOptions[0].textContent}`,
-      "rival-steps": isUpright(rival.acrobot.state) ? "upright" : rivalVerdict,
-    };
-    for (const [id, text] of Object.entries(texts)) write(id, text);
-    $("rival-score").hidden = $("rival").value === "";
-    const bits = new Uint32Array(game.numbers.buffer);
-    const rows = ["θ1", "θ2", "θ1′", "θ2′"].map((name, i) => {
-      const value = `${number(game.numbers[i], 4)} ${i < 2 ? "rad" : "rad/s"}`;
-      const code = `<code>${bits[i].toString(16).padStart(8, "0")}</code>`;
-      return `<tr><th scope="row">${name}</th><td>${value}</td><td>${code}</td></tr>`;
-    });
-    if (!playing || $("bits").open) $("state").innerHTML = rows.join("");
-  };
+  const { changed, frame: showNumbers } =
+    numbersOf(() => ({ game, rival, upright, playing }));
 
   let last = performance.now();
   const frame = (now) => {
@@ -266,12 +243,10 @@ function start() {
     const part = calm.matches ? 1 : Math.min(shown / dt, 1);
     drawStage(game, part, planner?.path ?? [], pulled);
     drawRival($("rival").value === "" ? null : rival, part);
-    // Plots take longer than all else, so each frame draws one at most. Texts come last, because
-    // the size of a canvas is only known after the layout.
-    if (dirty && (!playing || now - updated >= PERIOD)) update(now);
-    const thinks = planner?.thinks ?? false;
-    write("thought", thinks ? "Planning…" : planner?.message ?? "");
-    $("thought").classList.toggle("thinks", thinks);
+    // Last, because the size of a canvas is only known after the layout.
+    showNumbers(now);
+    const more = planner?.thinks ? "Planning…" : planner?.message ?? "";
+    if (more !== thought) say(said, more);
   };
 
   // ---- keys and buttons
@@ -300,7 +275,7 @@ function start() {
     if (!isWeak) return;
     setPhysics({ ...BALANCE });
     showParams();
-    if (playing) say(player());
+    say(`The machine is now ${machineOf(game.params)}. ${playing ? player() : ""}`);
   };
   $("policy").onchange = ({ target }) => select(target.value);
   for (const option of $("policy").options) {
@@ -332,7 +307,7 @@ function start() {
     () => game.params,
     (params) => {
       setPhysics(params);
-      say(playing ? `The physics has changed. ${player()}` : "The physics has changed.");
+      say(`The machine has changed. ${playing ? player() : ""}`.trim());
     },
   );
 
@@ -363,7 +338,10 @@ function start() {
     $("link").select();
     const inputs = actionsOf(game) === null ? "torques" : "actions";
     const content = `seed, physics and ${game.levels.length} ${inputs}`;
-    const shown = (text) => ($("link-field").firstElementChild.textContent = text);
+    const shown = (text) => {
+      $("link-field").firstElementChild.textContent = text;
+      say(`${text}.`);
+    };
     try {
       await navigator.clipboard.writeText(href);
       shown(`Copied: a link with ${content}`);
@@ -384,6 +362,7 @@ function start() {
       }
     },
     game,
+    say,
     drive() {
       choose("learnt");
       begin(game.seed);

@@ -23,6 +23,13 @@ const SETTLED = 2;
 const [PLANNED_ERROR, ERROR] = [0.05, 0.3];
 /** The torque's standard deviation for the estimator, as a part of the largest torque. */
 const TORQUE_STD = 0.01;
+/** Why there is no plan at all with a parameter of 0. */
+const REASONS = {
+  torque: "The motor's largest torque is 0 N m, so it moves nothing. Set another one.",
+  gravity: "Gravity is 0 m/s². Then the motor cannot stop the whole acrobot once it turns. " +
+    "Set another gravity.",
+};
+
 /** The most steps of a prediction, so that a tiny time step does not take minutes. */
 const STEPS = 3000;
 
@@ -85,7 +92,8 @@ export class PlannerPolicy {
 
   #check() {
     if (this.#error === null) return;
-    const message = this.#error;
+    const zero = Object.keys(REASONS).find((name) => this.#params?.[name] === 0);
+    const message = REASONS[zero] ?? this.#error;
     Object.assign(this, { thinks: false, message: "" });
     this.#error = this.#params = null;
     throw new Error(message);

@@ -69,3 +69,7 @@ export const textOf = (number) => (Object.is(number, -0) ? "-0" : String(number)
 export function parseNumber(text) {
   return text.trim() === "" ? NaN : Number(text);
 }
+
+/** The name of the machine with these parameters, or "". */
+export const machineOf = (params) =>
+  Object.keys(MACHINES).find((name) => isSame(params, MACHINES[name])) ?? "";

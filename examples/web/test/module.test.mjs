@@ -33,7 +33,7 @@ test("the curve's baseline is the mean return of the untrained policy", () => {
   }
   assert.ok(Math.abs(sum / episodes - BASELINE) < 2, `${sum / episodes}`);
   const html = readFileSync(new URL("../dist/index.html", import.meta.url), "utf8");
-  assert.ok(html.includes(`Bang-bang: −${-BASELINE}<`));
+  assert.ok(html.includes(`>−${-BASELINE}<`));
 });
 
 test("the picture between two steps moves from one to the other", () => {

@@ -44,6 +44,7 @@ export async function open({ hash = "", prepare, starts = true, ...options }, pl
   await page.goto(origin + hash);
   try {
     if (starts) await page.waitForSelector("#balance:enabled");
+    await page.$$eval(".panel", (panels) => panels.forEach((panel) => (panel.open = true)));
     await play(page);
     assert.deepEqual(wrong, []);
   } finally {

@@ -22,7 +22,7 @@ onPage("the planner holds the acrobot, also after pulls", {}, async (page) => {
   assert.deepEqual(["index", "control"].map((name) => first.join().includes(`/${name}.js`)),
     [true, false]);
   await page.click("#balance");
-  await says(page, "#thought", /^Plan of \d/);
+  await says(page, "#status", /Plan of \d/);
   assert.match(page.workers()[0].url(), /planning\.js$/);
   await page.selectOption("#pace", "4");
   await holds(page);

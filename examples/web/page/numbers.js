@@ -1,0 +1,65 @@
+// The numbers and plots beside the picture.
+
+import { CHARTS, number } from "./charts.js";
+import { isUpright } from "./game.js";
+import { minus } from "./plot.js";
+
+const $ = (id) => document.getElementById(id);
+
+/** The least time between two updates while it plays, ms. */
+const PERIOD = 30;
+
+/** The same text again would need another layout. */
+const write = (id, text) => $(id).textContent !== text && ($(id).textContent = text);
+
+const verdict = ({ steps, end }) =>
+  ({ goal: `Goal! ${steps} steps`, limit: "Out of time" })[end] ?? "";
+
+function showNumbers(game, rival, upright, playing) {
+  const name = $("rival").selectedOptions[0].textContent;
+  const texts = {
+    "step": String(game.steps),
+    "return": game.free ? `${upright.toFixed(1)} s` : minus(String(game.return)),
+    "steps-label": game.free ? "Steps" : "Steps (at most 500)",
+    "return-label": game.free ? "Upright for" : "Return",
+    "pause": playing ? "Pause" : "Play",
+    "verdict": verdict(game),
+    "rival-label": `Grey: ${name}`,
+    "rival-steps": isUpright(rival.acrobot.state) ? "upright" : verdict(rival) || `${rival.steps}`,
+  };
+  for (const [id, text] of Object.entries(texts)) write(id, text);
+  $("rival-score").hidden = $("rival").value === "";
+}
+
+function showBits({ numbers }) {
+  const bits = new Uint32Array(numbers.buffer);
+  const rows = ["θ1", "θ2", "θ1′", "θ2′"].map((name, i) => {
+    const value = `${number(numbers[i], 4)} ${i < 2 ? "rad" : "rad/s"}`;
+    const code = `<code>${bits[i].toString(16).padStart(8, "0")}</code>`;
+    return `<tr><th scope="row">${name}</th><td>${value}</td><td>${code}</td></tr>`;
+  });
+  $("state").innerHTML = rows.join("");
+}
+
+/**
+ * Shows numbers and plots of what `get` returns, after calls of its `changed`, in frames: plots
+ * take longer than all else, so while it plays each frame draws one at most.
+ */
+export function numbersOf(get) {
+  /** How many plots do not show the last change. */
+  let stale = CHARTS.length;
+  let [updated, turn] = [0, 0];
+  const changed = () => (stale = CHARTS.length);
+  $("bits").ontoggle = changed;
+  const frame = (now) => {
+    const { game, rival, upright, playing } = get();
+    if (stale === 0 || (playing && now - updated < PERIOD)) return;
+    updated = now;
+    const count = playing ? 1 : CHARTS.length;
+    stale -= Math.min(count, stale);
+    for (let i = 0; i < count; i++) CHARTS[turn++ % CHARTS.length](game);
+    showNumbers(game, rival, upright, playing);
+    if (!playing || $("bits").open) showBits(game);
+  };
+  return { changed, frame };
+}
