@@ -8,6 +8,8 @@ import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed, textOf } from "./s
 const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
 /** Who plays on after the inputs. */
 const POLICIES = ["planner", "bang_bang", "energy_law", "random"];
+/** The longest code of a controller. */
+const CODE = 4000;
 /** The largest push in its units. */
 const PUSH = 2 ** 20;
 
@@ -20,12 +22,13 @@ export function actionsOf({ start, levels, pushes }) {
 }
 
 export function encodeRun(run) {
-  const { seed, params, start, levels, pushes, policy } = run;
+  const { seed, params, start, levels, pushes, policy, controller } = run;
   const fields = new URLSearchParams({ seed });
   for (const [name, value] of Object.entries(params)) {
     if (value !== DEFAULTS[name]) fields.set(name, textOf(value));
   }
   if (POLICIES.includes(policy)) fields.set("policy", policy);
+  if (controller !== undefined) fields.set("controller", controller.slice(0, CODE));
   const actions = actionsOf(run);
   const pushed = pushes.flatMap((push, step) => (push === null ? [] : [step, ...push]));
   const lists = {
@@ -46,7 +49,8 @@ export function decodeRun(hash) {
   const rejected = (rule, name) => {
     throw new Error(`${rule}, got ${JSON.stringify(name)}`);
   };
-  const names = ["seed", "dynamics", "policy", "actions", "state", "torques", "pushes"];
+  const names = ["seed", "dynamics", "policy", "controller", "actions", "state",
+    "torques", "pushes"];
   const known = [...names, ...PARAMETERS.map(({ name }) => name)];
   const unknown = [...fields.keys()].find((name) => !known.includes(name));
   if (unknown !== undefined) rejected(`names in the link must be ${known.join(", ")}`, unknown);
@@ -59,6 +63,8 @@ export function decodeRun(hash) {
   if (policy !== undefined && !POLICIES.includes(policy)) {
     rejected(`policy in the link must be ${POLICIES.join(", ")}`, policy);
   }
+  const controller = fields.get("controller") ?? undefined;
+  if (controller?.length > CODE) rejected(`controller must have at most ${CODE} characters`, "");
   const seed = parseSeed(fields.get("seed") ?? "42");
 
   const actions = fields.get("actions") ?? "";
@@ -90,5 +96,5 @@ export function decodeRun(hash) {
   if (state.length % 4 !== 0) rejected("state must be 4 numbers", state);
   const entries = state.map((number, i) => [STATE[i], number]);
   const start = entries.length === 0 ? null : Object.fromEntries(entries);
-  return { seed, params, policy, start, levels, pushes };
+  return { seed, params, policy, controller, start, levels, pushes };
 }

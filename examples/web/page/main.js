@@ -1,18 +1,16 @@
 // Connects the page to an episode and to the panels.
 
 import { Learner, bangBang, energyLaw } from "./acrobot-rs/policies.js";
-import { animationOf } from "./animation.js";
 import { connectControls } from "./controls.js";
-import { download } from "./files.js";
 import { FULL, Game, UNITS, isUpright, noisy } from "./game.js";
 import { actionsOf, decodeRun, encodeRun } from "./link.js";
 import { numbersOf } from "./numbers.js";
+import { connectPanels } from "./panels.js";
 import { attempt, parametersPanel } from "./parameters.js";
 import { placesOf } from "./places.js";
 import { minus } from "./plot.js";
 import { BALANCE, DEFAULTS, LIMIT, isSame, machineOf, parseSeed } from "./settings.js";
 import { drawRival, drawStage, placeAt } from "./stage.js";
-import { trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -26,12 +24,17 @@ function start() {
   /** The module of the planner and of pulls, once it has been loaded, and each game's planner. */
   let control = null;
   const planners = new Map();
-  let learnt = learner;
-  const POLICIES = {
-    bang_bang: bangBang,
-    energy_law: energyLaw,
-    learnt: (acrobot) => learnt.act(acrobot),
-    random: (acrobot) => acrobot.sample(),
+  const held = { left: false, right: false };
+  /** What pulls: a `point` of a link, and where to, in the picture or as seen from the point. */
+  let grip = null;
+  const full = (act) => ({ acrobot }) => FULL * (act(acrobot) - 1);
+  /** The motor's level by each policy, for a game. */
+  const policies = {
+    keys: () => FULL * (Number(held.right) - Number(held.left)),
+    bang_bang: full(bangBang),
+    energy_law: full(energyLaw),
+    random: full((acrobot) => acrobot.sample()),
+    planner: (game) => planners.get(game)?.act(game, grip !== null) ?? 0,
   };
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const isTouch = matchMedia("(hover: none)").matches;
@@ -45,9 +48,6 @@ function start() {
   let nextAt = Infinity;
   /** The run of a link. */
   let recorded = null;
-  const held = { left: false, right: false };
-  /** What pulls: a `point` of a link, and where to, in the picture or as seen from the point. */
-  let grip = null;
   /** The seconds since the acrobot is upright, and the steps before the user took over. */
   let upright = 0;
   let before = 0;
@@ -55,14 +55,6 @@ function start() {
   let stuck = false;
 
   // ---- the episode
-
-  const level = (policy, game) => {
-    const decided = {
-      keys: () => FULL * (Number(held.right) - Number(held.left)),
-      planner: () => planners.get(game)?.act(game, grip !== null) ?? 0,
-    }[policy] ?? (() => FULL * (POLICIES[policy](game.acrobot) - 1));
-    return noisy(decided(), game.params);
-  };
 
   /** Where the grip pulls to, m. */
   const target = () => {
@@ -78,6 +70,8 @@ function start() {
     return units.some((unit) => unit !== 0) ? units : null;
   };
 
+  const levelBy = (policy, game) => noisy(policies[policy](game), game.params);
+
   const step = () => {
     try {
       const index = game.steps;
@@ -88,12 +82,11 @@ function start() {
         return pause("The replay has ended. Press Restart, or an arrow and Play.");
       }
       const pushed = replays ? recorded.pushes[index] : push();
-      game.step(replays ? recorded.levels[index] : level(policy, game), pushed);
+      game.step(replays ? recorded.levels[index] : levelBy(policy, game), pushed);
       const other = $("rival").value;
-      if (other !== "") rival.step(level(other, rival), pushed);
+      if (other !== "") rival.step(levelBy(other, rival), pushed);
     } catch (error) {
-      pause(minus(error.message)); // With extreme physics an energy is infinite.
-      return (stuck = true);
+      return stick(minus(error.message)); // With extreme physics an energy is infinite.
     }
     upright = isUpright(game.acrobot.state) ? upright + game.params.dt : 0;
     shown = 0;
@@ -106,10 +99,13 @@ function start() {
     say(`${result} ${continues ? "The next seed follows." : "Press Restart or Next seed."}`);
   };
 
+  /** Whether who plays goes on at the goal. */
+  const isFree = () => ["planner", "own"].includes($("policy").value);
+
   /** Begins an episode, or a link's run from the state where it begins. */
   const begin = (seed, params = game.params, run = replayed()) => {
     game.begin(seed, params, run?.start);
-    game.free = $("policy").value === "planner" || (run !== null && actionsOf(run) === null);
+    game.free = isFree() || (run !== null && actionsOf(run) === null);
     rival.begin(seed, params, run?.start);
     rival.free = $("rival").value === "planner";
     upright = before = 0;
@@ -126,7 +122,8 @@ function start() {
   const address = (run = replayed() ?? { start: null, levels: [], pushes: [] }) => {
     const { seed, params } = game;
     const policy = run === recorded ? recorded.policy : $("policy").value;
-    history.replaceState(null, "", encodeRun({ ...run, seed, params, policy }));
+    const controller = policy === "own" ? panels.code : undefined;
+    history.replaceState(null, "", encodeRun({ ...run, seed, params, policy, controller }));
   };
   const replayed = () => ($("policy").value === "link" ? recorded : null);
 
@@ -149,6 +146,7 @@ function start() {
   const next = () => begin(game.seed + 1n);
 
   const play = () => {
+    if (playing) return;
     [playing, stuck] = [true, false];
     if (game.end !== null) reset();
     say(player());
@@ -162,10 +160,19 @@ function start() {
     say(message);
     changed();
   };
+  /** Pauses until the parameters change. */
+  const stick = (message) => {
+    pause(message);
+    stuck = true;
+  };
   const toggle = () => (playing ? pause("Paused.") : play());
+  /** Whether the button for one step waits for it. */
+  let waits = false;
   const single = () => {
     if (playing) pause("Paused.");
     if (game.end !== null) return say("The episode has ended. Press Restart or Next seed.");
+    waits = !panels.isReady($("policy").value);
+    if (waits) return;
     step();
     shown = game.params.dt;
     changed();
@@ -194,13 +201,11 @@ function start() {
     const takesOver = policy === "keys" && $("policy").value !== "keys";
     before = takesOver ? game.steps : 0;
     $("policy").value = policy;
-    if (policy === "planner") {
+    if (isFree()) {
       game.release();
       nextAt = Infinity;
     } else if (policy === "link") begin(recorded.seed, recorded.params);
-    else if (policy !== "keys" && (game.end !== null || game.free)) {
-      begin(game.seed, isSame(game.params, BALANCE) ? { ...DEFAULTS } : game.params);
-    }
+    else if (policy !== "keys" && game.end !== null) begin(game.seed);
     $("policy-hint").textContent = $("policy").selectedOptions[0].dataset.hint;
     showParams();
     address();
@@ -214,6 +219,18 @@ function start() {
   const { changed, frame: showNumbers } =
     numbersOf(() => ({ game, rival, upright, playing }));
 
+  /** Takes the steps that are due. */
+  const advance = () => {
+    // With a tiny dt a frame shows fewer steps than it should.
+    for (let i = 0; playing && game.end === null && shown >= game.params.dt && i < LIMIT; i++) {
+      if (!panels.isReady($("policy").value)) return;
+      const over = i + 1 < LIMIT ? shown - game.params.dt : 0;
+      step();
+      shown = playing ? over : game.params.dt;
+      changed();
+    }
+  };
+
   let last = performance.now();
   const frame = (now) => {
     requestAnimationFrame(frame);
@@ -222,14 +239,9 @@ function start() {
     last = now;
     const { dt } = game.params;
     if (playing && game.end === null) {
-      shown += elapsed * Number($("pace").value);
-      // With a tiny dt a frame shows fewer steps than it should.
-      for (let i = 0; shown >= dt && playing && game.end === null && i < LIMIT; i++) {
-        const over = i + 1 < LIMIT ? shown - dt : 0;
-        step();
-        shown = playing ? over : dt;
-        changed();
-      }
+      // Not more than a picture's worth, if the own controller has not answered.
+      shown = Math.min(shown, dt) + elapsed * Number($("pace").value);
+      advance();
     } else {
       shown = Math.min(shown + elapsed * Number($("pace").value), dt);
     }
@@ -268,18 +280,20 @@ function start() {
   });
   const buttons = { pause: toggle, single, reset, next };
   for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
-  const select = (policy) => {
-    // With Gymnasium's 1 N m a swing-up takes at least 10 s, and a touch is enough for a fall.
-    const isWeak = policy === "planner" && isSame(game.params, DEFAULTS);
-    choose(policy);
-    if (!isWeak) return;
+  /** With Gymnasium's 1 N m a swing-up takes at least 10 s, and a touch is enough for a fall. */
+  const strengthen = () => {
+    if (!isSame(game.params, DEFAULTS)) return;
     setPhysics({ ...BALANCE });
     showParams();
     say(`The machine is now ${machineOf(game.params)}. ${playing ? player() : ""}`);
   };
+  const select = (policy) => {
+    choose(policy);
+    if (policy === "planner") strengthen();
+  };
   $("policy").onchange = ({ target }) => select(target.value);
   for (const option of $("policy").options) {
-    if (!["keys", "link"].includes(option.value)) $("rival").append(option.cloneNode(true));
+    if (!["keys", "link", "own"].includes(option.value)) $("rival").append(option.cloneNode(true));
   }
   $("rival").onchange = ({ target: { value } }) => {
     begin(game.seed);
@@ -288,7 +302,7 @@ function start() {
   };
   $("balance").onclick = () => {
     select("planner");
-    if (!playing) play();
+    play();
   };
   // After a click. Who uses the keyboard may go on with ↑ and ↓.
   const leaves = ({ target }) => target.matches("select:not(:focus-visible)") && target.blur();
@@ -313,6 +327,16 @@ function start() {
 
   // ---- links, files, and the panels
 
+  const panels = connectPanels({
+    game, learner, policies, begin, choose, play, stick, say, address, strengthen,
+    answered: () => (waits ? single() : advance()),
+    beginAt(start) {
+      begin(game.seed, game.params, { start, levels: [], pushes: [] });
+      game.release();
+      if (!playing) say("Press Play.");
+    },
+  });
+
   const open = (hash) => {
     if (hash.length <= 1) return;
     try {
@@ -321,8 +345,12 @@ function start() {
       recorded = run;
       const { length } = run.levels;
       document.querySelector("[value=link]").disabled = length === 0;
-      choose(length > 0 ? "link" : run.policy ?? "bang_bang");
+      const { controller } = run;
+      choose(length > 0 ? "link" : run.policy ?? (controller ? "keys" : "bang_bang"));
       if (length > 0) say(`Replay of a link: ${length} steps of seed ${run.seed}.`);
+      if (controller === undefined) return;
+      if (length === 0) pause("");
+      panels.show(controller);
     } catch (error) {
       address();
       say(`The link is invalid: ${minus(error.message)}`);
@@ -330,49 +358,10 @@ function start() {
     }
   };
   addEventListener("hashchange", () => open(location.hash));
-  $("share").onclick = async () => {
-    address(game);
-    const { href } = location;
-    $("link").value = href;
-    $("link-field").hidden = false;
-    $("link").select();
-    const inputs = actionsOf(game) === null ? "torques" : "actions";
-    const content = `seed, physics and ${game.levels.length} ${inputs}`;
-    const shown = (text) => {
-      $("link-field").firstElementChild.textContent = text;
-      say(`${text}.`);
-    };
-    try {
-      await navigator.clipboard.writeText(href);
-      shown(`Copied: a link with ${content}`);
-    } catch {
-      shown(`The browser does not allow copying. Copy this link with ${content}`);
-    }
-  };
-
-  $("animate").onclick = () =>
-    download("acrobot.svg", [animationOf(game)], { type: "image/svg+xml" });
-
-  const training = trainingPanel(learner, {
-    ready(policy) {
-      learnt = policy;
-      for (const option of document.querySelectorAll("[value=learnt]")) {
-        option.disabled = false;
-        option.textContent = "Learnt";
-      }
-    },
-    game,
-    say,
-    drive() {
-      choose("learnt");
-      begin(game.seed);
-      if (!playing) play();
-    },
-  });
 
   for (const query of ["(prefers-color-scheme: dark)", "(prefers-reduced-motion: reduce)"]) {
     matchMedia(query).addEventListener("change", () => {
-      training.draw();
+      panels.draw();
       changed();
     });
   }

@@ -66,7 +66,7 @@ export function trainingPanel(learner, { ready, drive, game, say }) {
     if (!isPerceptron) learner.load(bytes);
     weights = bytes;
     $("save").disabled = $("drive").disabled = false;
-    ready(policy);
+    ready(({ acrobot }) => FULL * (policy.act(acrobot) - 1));
     return policy;
   };
 

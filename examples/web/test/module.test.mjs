@@ -63,6 +63,7 @@ test("an invalid link is rejected with the reason", () => {
     ["#torques=1&pushes=1_2_3", /^pushes must be of steps, got \[1,2,3\]$/],
     ["#state=1_2_3", /^state must be 4 numbers, got \[1,2,3\]$/],
     ["#policy=learnt", /^policy in the link must be planner, .*, got "learnt"$/],
+    [`#controller=${"a".repeat(4001)}`, /^controller must have at most 4000 characters, got ""$/],
     ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
   ]) {
     assert.throws(() => decodeRun(bad), { message });
@@ -133,9 +134,9 @@ test("any link is replayed or is rejected with the reason", () => {
   // A zero with a sign.
   const params = { ...DEFAULTS, mass1: 1.5, dt: 0.05, gravity: -0, dynamics: "nips" };
   const levels = ACTIONS.map((action) => FULL * (action - 1));
-  const run = { seed: 42n, params, policy: undefined, start: null, levels };
+  const run = { seed: 42n, params, policy: undefined, controller: undefined, start: null, levels };
   const short = { ...run, pushes: levels.map(() => null) };
-  const pushed = { ...short, policy: "planner", pushes: levels.map(() => [UNITS, -1]) };
+  const pushed = { ...short, policy: "planner", controller: "a\n&b", pushes: levels.map(() => [UNITS, -1]) };
   const start = { theta1: 1, theta2: -0.5, dtheta1: 1e-9, dtheta2: -0 };
   const links = [short, { ...pushed, start }, pushed].map((run) => {
     assert.deepEqual(decodeRun(encodeRun(run)), run);

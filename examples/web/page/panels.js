@@ -1,0 +1,79 @@
+// Connects the panels to the episode. What a first visit does not need is loaded when its panel
+// opens.
+
+import { animationOf } from "./animation.js";
+import { download } from "./files.js";
+import { levelOf } from "./game.js";
+import { connectShare } from "./share.js";
+import { trainingPanel } from "./training.js";
+
+const $ = (id) => document.getElementById(id);
+
+/** Nearly upright: without a torque it falls. */
+const UPRIGHT = { theta1: Math.PI - 0.01, theta2: 0, dtheta1: 0, dtheta2: 0 };
+
+/** Lets a policy be chosen, under its name. */
+const enable = (policy, name) => {
+  for (const option of document.querySelectorAll(`[value=${policy}]`)) {
+    option.disabled = false;
+    option.textContent = name;
+  }
+};
+
+/** Connects the panels to the functions of main.js. */
+export function connectPanels(app) {
+  const { game, learner, policies } = app;
+  connectShare(app);
+  $("animate").onclick = () =>
+    download("acrobot.svg", [animationOf(game)], { type: "image/svg+xml" });
+  $("upright").onclick = () => app.beginAt(UPRIGHT);
+
+  const training = trainingPanel(learner, {
+    ...app,
+    ready(policy) {
+      policies.learnt = policy;
+      enable("learnt", "Learnt");
+    },
+    drive() {
+      app.choose("learnt");
+      app.begin(game.seed);
+      app.play();
+    },
+  });
+
+  /** The user's controller, once its panel has been opened. */
+  let own = null;
+  const loadOwn = async () => {
+    const { ownPanel } = await import("./own.js");
+    own ??= ownPanel({
+      run() {
+        enable("own", "Your own controller");
+        app.choose("own");
+        app.play();
+      },
+      answered: app.answered,
+      failed: app.stick,
+      chosen: ({ strong }) => strong && app.strengthen(),
+    });
+    policies.own = (game) => levelOf(own.torqueAt(game), game.params.torque);
+  };
+  $("controller").ontoggle = () => $("controller").open && loadOwn();
+
+  return {
+    draw: training.draw,
+    /** The user's code, if it has run. */
+    get code() {
+      return own?.code ?? undefined;
+    },
+    /** Whether a policy knows the torque of the next step. The own controller answers later. */
+    isReady: (policy) => policy !== "own" || own.torqueAt(game) !== null,
+    /** Shows the controller of a link, which begins only with a click. */
+    async show(code) {
+      document.querySelector("[value=own]").disabled = true;
+      $("controller").open = true;
+      await loadOwn();
+      own.show(code);
+      app.say($("code-origin").textContent);
+    },
+  };
+}
