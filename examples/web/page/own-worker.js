@@ -17,7 +17,7 @@ let count = 0;
 /** Throws in a loop that takes too long. Otherwise it is true. */
 function $loop(line) {
   if (count++ % 256 > 0 || performance.now() < deadline) return true;
-  throw Object.assign(new Error(`the loop did not end within ${LIMIT / 1000} s`), { line });
+  throw Object.assign(new Error(`the loop did not end within ${LIMIT / 1000} s`), { ownLine: line });
 }
 
 /** The functions that the user's code calls. */
@@ -64,6 +64,6 @@ export function answer(make, { id, params, state, t }) {
     const [, line] = /blob:\S*?:(\d+):\d+/.exec(error?.stack) ?? [];
     const name = error?.name === "Error" || !error?.name ? "" : `${error.name}: `;
     const message = `${name}${error?.message ?? error}`;
-    postMessage({ id, message, line: error?.line ?? (line && line - 1) });
+    postMessage({ id, message, line: error?.ownLine ?? (line && line - 1) });
   }
 }
