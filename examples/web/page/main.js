@@ -100,7 +100,7 @@ function start() {
   };
 
   /** Whether who plays goes on at the goal. */
-  const isFree = () => ["planner", "own"].includes($("policy").value);
+  const isFree = () => ["planner", "own", "regulator"].includes($("policy").value);
 
   /** Begins an episode, or a link's run from the state where it begins. */
   const begin = (seed, params = game.params, run = replayed()) => {
@@ -257,6 +257,7 @@ function start() {
     drawRival($("rival").value === "" ? null : rival, part);
     // Last, because the size of a canvas is only known after the layout.
     showNumbers(now);
+    panels.frame();
     const more = planner?.thinks ? "Planning…" : planner?.message ?? "";
     if (more !== thought) say(said, more);
   };
@@ -328,7 +329,7 @@ function start() {
   // ---- links, files, and the panels
 
   const panels = connectPanels({
-    game, learner, policies, begin, choose, play, stick, say, address, strengthen,
+    game, learner, policies, changed, begin, choose, play, stick, say, address, strengthen,
     answered: () => (waits ? single() : advance()),
     beginAt(start) {
       begin(game.seed, game.params, { start, levels: [], pushes: [] });

@@ -26,7 +26,6 @@ export function connectPanels(app) {
   connectShare(app);
   $("animate").onclick = () =>
     download("acrobot.svg", [animationOf(game)], { type: "image/svg+xml" });
-  $("upright").onclick = () => app.beginAt(UPRIGHT);
 
   const training = trainingPanel(learner, {
     ...app,
@@ -57,9 +56,37 @@ export function connectPanels(app) {
     });
     policies.own = (game) => levelOf(own.torqueAt(game), game.params.torque);
   };
+  $("run-upright").onclick = () => {
+    app.beginAt(UPRIGHT);
+    $("run").click();
+  };
   $("controller").ontoggle = () => $("controller").open && loadOwn();
 
+  let regulator = null;
+  const playRegulator = () => {
+    app.choose("regulator");
+    app.play();
+  };
+  const loadRegulator = async () => {
+    const { regulatorPanel } = await import("./regulator.js");
+    if (regulator !== null) return;
+    const play = (state) => {
+      app.beginAt(state);
+      playRegulator();
+    };
+    regulator = regulatorPanel({ game, play, changed: app.changed });
+    policies.regulator = regulator.act;
+    enable("regulator", "Regulator");
+  };
+  $("regulate").onclick = () => regulator && playRegulator();
+  $("regulate-upright").onclick = () => {
+    app.beginAt(UPRIGHT);
+    $("regulate").click();
+  };
+  $("regulator").ontoggle = () => $("regulator").open && loadRegulator();
+
   return {
+    frame: () => $("regulator").open && regulator?.frame(),
     draw: training.draw,
     /** The user's code, if it has run. */
     get code() {

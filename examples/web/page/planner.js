@@ -7,6 +7,7 @@ import { Estimator, deviationFrom, planTorque } from "./acrobot-rs/control.js";
 import { energyLaw } from "./acrobot-rs/policies.js";
 import { isUpright, levelOf, newAcrobot, normal, torqueOf } from "./game.js";
 import { placesOf } from "./places.js";
+import { reasonOf } from "./settings.js";
 
 export { pull } from "./push.js";
 
@@ -23,13 +24,6 @@ const SETTLED = 2;
 const [PLANNED_ERROR, ERROR] = [0.05, 0.3];
 /** The torque's standard deviation for the estimator, as a part of the largest torque. */
 const TORQUE_STD = 0.01;
-/** Why there is no plan at all with a parameter of 0. */
-const REASONS = {
-  torque: "The motor's largest torque is 0 N m, so it moves nothing. Set another one.",
-  gravity: "Gravity is 0 m/s². Then the motor cannot stop the whole acrobot once it turns. " +
-    "Set another gravity.",
-};
-
 /** The most steps of a prediction, so that a tiny time step does not take minutes. */
 const STEPS = 3000;
 
@@ -92,8 +86,7 @@ export class PlannerPolicy {
 
   #check() {
     if (this.#error === null) return;
-    const zero = Object.keys(REASONS).find((name) => this.#params?.[name] === 0);
-    const message = REASONS[zero] ?? this.#error;
+    const message = (this.#params && reasonOf(this.#params)) ?? this.#error;
     Object.assign(this, { thinks: false, message: "" });
     this.#error = this.#params = null;
     throw new Error(message);

@@ -101,7 +101,8 @@ export function ticks(low, high, count) {
   return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, i) => (first + i) * step);
 }
 
-const label = (value) => minus(String(Number(value.toPrecision(3))));
+/** A number on an axis. */
+export const label = (value) => minus(String(Number(value.toPrecision(3))));
 
 /** The range of some values, made a little wider, so that it is never empty. */
 export function rangeOf(values) {

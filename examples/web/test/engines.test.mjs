@@ -88,7 +88,7 @@ test("the user's own controller plays, and stops with a line", async () => {
     await page.evaluate(help);
     await page.evaluate(() => (document.querySelector("#controller").open = true));
     await page.waitForFunction(() => document.querySelector("#code").value !== "");
-    await page.evaluate(() => (select("#example", "LQR"), click("#run"), click("#upright")));
+    await page.evaluate(() => (select("#example", "LQR"), click("#run-upright")));
     await page.waitForFunction(holds);
     for (const [line, reason] of [["while (true) {}", "loop did not end"], ["x.y()", "x"]]) {
       await page.evaluate((line) => {

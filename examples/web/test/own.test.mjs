@@ -31,7 +31,7 @@ onPage("each example plays, and two of them hold the acrobot", {}, async (page) 
     await page.click("#run");
     await stepped(page, Number(await text(page, "#step")) + 5);
     if (EXAMPLES[name].strong) {
-      await page.click("#upright");
+      await page.click("#run-upright");
       await page.selectOption("#pace", "4");
       await says(page, "#return", /^[2-9]\.\d s$/);
     }

@@ -1,0 +1,181 @@
+// The panel "Hold it by a regulator": weights, gain, poles, and the plane of θ1 and θ1′ with the
+// states from which the regulator holds.
+
+import { linearizeStep, regulator } from "./acrobot-rs/control.js";
+import { number } from "./charts.js";
+import { levelOf } from "./game.js";
+import { eigenvalues, leanOf, torqueBy } from "./law.js";
+import { color, label, minus, ticks } from "./plot.js";
+import { reasonOf } from "./settings.js";
+
+/** The states of the grid in both directions. */
+const SIZE = 48;
+/** How much of the path is shown, s. */
+const PATH = 4;
+const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
+const NAMES = ["θ1", "θ2", "θ1′", "θ2′", "Torque"];
+const MARGIN = { left: 40, bottom: 20 };
+
+const $ = (id) => document.getElementById(id);
+
+/** Half of the plane's width, rad, and height, rad/s: as far as the motor could hold the links. */
+function rangeOf({ mass1, mass2, length1, centerOfMass1, centerOfMass2, gravity, torques }) {
+  const level = gravity * (mass1 * centerOfMass1 + mass2 * (length1 + centerOfMass2));
+  const width = Math.min(0.6, (1.2 * torques[2]) / Math.abs(level)) || 0.6;
+  return [width, 5 * width];
+}
+
+/** Calls `play` with a state that the user has chosen in the plane. Returns the policy. */
+export function regulatorPanel({ game, play, changed }) {
+  let weights = NAMES.map(() => 1);
+  /** The gain, or null, and what it is of. */
+  let [gain, of, reason] = [null, null, ""];
+  let [worker, asked, region] = [null, null, null];
+  const canvas = $("plane");
+
+  /** Computes the gain for the machine, if it has changed. */
+  const design = () => {
+    const { params } = game;
+    if (of?.params === params && of.weights === weights) return;
+    of = { params, weights };
+    const q = weights.slice(0, 4).map((weight, i, all) => all.map((_, j) => (i === j) * weight));
+    try {
+      gain = regulator(game.acrobot.params, q, weights[4]).gain;
+      const { a, b } = linearizeStep(UPRIGHT, 0, game.acrobot.params);
+      const closed = a.map((row, i) => Array.from(row, (value, j) => value - b[i] * gain[j]));
+      const poles = eigenvalues(closed).map(([x, y]) => {
+        const [growth, turn] = [Math.log(Math.hypot(x, y)), Math.atan2(y, x)];
+        return [growth, turn].map((value) => value / params.dt);
+      });
+      poles.sort(([a], [b]) => a - b);
+      const texts = poles.filter(([, turn]) => turn > -1e-3).map(([growth, turn]) =>
+        `${number(growth)}${turn < 1e-3 ? "" : ` ± ${number(turn)} i`}`);
+      $("gain").textContent = Array.from(gain, (k) => number(k, 1)).join(", ");
+      $("poles").textContent = texts.join(", ");
+      reason = "";
+    } catch ({ message }) {
+      [gain, region] = [null, null];
+      reason = reasonOf(params) ?? minus(message);
+      for (const id of ["gain", "poles"]) $(id).textContent = "–";
+    }
+    $("regulator-reason").textContent = reason;
+    changed();
+  };
+
+  /** What has the angle and the velocity of link 2: the state, if it is in sight, or upright. */
+  const sliceOf = ([width, height]) => {
+    const { state } = game.acrobot;
+    const isIn = Math.abs(leanOf(state.theta1)) < width && Math.abs(state.dtheta1) < height;
+    return isIn ? state : UPRIGHT;
+  };
+  /** Asks for the region in the plane. */
+  const ask = ([width, height]) => {
+    const { params, state } = game.acrobot;
+    const { theta2, dtheta2 } = sliceOf([width, height]);
+    const now = [gain, ...Object.values(state)].join();
+    if (gain === null || now === asked) return;
+    if (worker === null) {
+      worker = new Worker(new URL("region.js", import.meta.url), { type: "module" });
+      worker.onmessage = ({ data }) => ([region, worker.isBusy] = [data, false]);
+      worker.onerror = ({ message }) => ($("regulator-reason").textContent = message);
+    }
+    if (worker.isBusy) return;
+    [worker.isBusy, asked] = [true, now];
+    const part = (i) => (2 * i + 1) / SIZE - 1;
+    const [xs, ys] = [1, -1].map((sign) => Array.from({ length: SIZE }, (_, i) => sign * part(i)));
+    worker.postMessage({
+      params, gain, theta2, dtheta2, state: Object.values(state),
+      xs: xs.map((x) => x * width), ys: ys.map((y) => y * height),
+    });
+  };
+
+  const draw = ([width, height]) => {
+    const { clientWidth, clientHeight } = canvas;
+    const size = [clientWidth, clientHeight].map((side) => Math.round(side * devicePixelRatio));
+    if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
+    const context = canvas.getContext("2d");
+    context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+    context.clearRect(0, 0, clientWidth, clientHeight);
+    const [right, low] = [clientWidth - MARGIN.left, clientHeight - MARGIN.bottom];
+    const x = (value) => MARGIN.left + ((value / width + 1) / 2) * right;
+    const y = (value) => ((1 - value / height) / 2) * low;
+
+    context.fillStyle = color("--region");
+    const edge = (i, side) => Math.round((i * side) / SIZE);
+    for (let i = 0; region !== null && i < SIZE * SIZE; i++) {
+      const [column, row] = [i % SIZE, Math.floor(i / SIZE)];
+      const [left, top] = [edge(column, right), edge(row, low)];
+      const size = [edge(column + 1, right) - left, edge(row + 1, low) - top];
+      if (region[i]) context.fillRect(MARGIN.left + left, top, ...size);
+    }
+    context.font = `11px ${getComputedStyle(canvas).fontFamily}`;
+    context.textAlign = "center";
+    const line = (points, style, width = 1) => {
+      Object.assign(context, { strokeStyle: style, lineWidth: width, lineJoin: "round" });
+      context.beginPath();
+      for (const point of points) context.lineTo(...point);
+      context.stroke();
+    };
+    const text = (words, at) => {
+      context.fillStyle = color("--muted");
+      context.fillText(words, ...at);
+    };
+    for (const tick of ticks(-width, width, 4)) {
+      line([[x(tick), 0], [x(tick), low]], color("--grid"));
+      text(label(tick), [x(tick), clientHeight - 5]);
+    }
+    context.textAlign = "right";
+    for (const tick of ticks(-height, height, 4)) {
+      line([[MARGIN.left, y(tick)], [clientWidth, y(tick)]], color("--grid"));
+      text(label(tick), [MARGIN.left - 6, y(tick) + 4]);
+    }
+    context.save();
+    context.beginPath();
+    context.rect(MARGIN.left, 0, right, low);
+    context.clip();
+    const count = Math.ceil(PATH / game.params.dt);
+    const [angles, velocities] = [0, 2].map((index) => game.column(index).slice(-count));
+    const points = angles.map((angle, i) => [x(leanOf(angle)), y(velocities[i])]);
+    line(points, color("--second"), 1.5);
+    context.fillStyle = color("--second");
+    context.beginPath();
+    context.arc(...points.at(-1), 4, 0, 2 * Math.PI);
+    context.fill();
+    context.restore();
+  };
+
+  $("weights").innerHTML = NAMES.map((name, i) => `<label for="weight${i}">${name}</label>
+    <input id="weight${i}" type="range" min="-3" max="3" step="0.1" value="0">
+    <span id="weight${i}-value">1</span>`).join("");
+  $("weights").oninput = () => {
+    weights = NAMES.map((_, i) => 10 ** Number($(`weight${i}`).value));
+    weights.forEach((weight, i) => {
+      $(`weight${i}-value`).textContent = Number(weight.toPrecision(2));
+      $(`weight${i}`).ariaValueText = weight.toPrecision(2);
+    });
+    design();
+  };
+  canvas.onclick = ({ offsetX, offsetY }) => {
+    const range = rangeOf(game.acrobot.params);
+    const across = 2 * (offsetX - MARGIN.left) / (canvas.clientWidth - MARGIN.left) - 1;
+    const up = 1 - (2 * offsetY) / (canvas.clientHeight - MARGIN.bottom);
+    const [theta1, dtheta1] = [Math.PI + across * range[0], up * range[1]];
+    play({ ...sliceOf(range), theta1, dtheta1 });
+  };
+
+  return {
+    frame() {
+      design();
+      const range = rangeOf(game.acrobot.params);
+      ask(range);
+      draw(range);
+      const verdict = region === null ? "" : region.at(-1) ? "it holds from here" : "it falls";
+      if ($("verdict-now").textContent !== verdict) $("verdict-now").textContent = verdict;
+    },
+    act({ acrobot, params }) {
+      design();
+      if (gain === null) throw new Error(reason);
+      return levelOf(torqueBy(gain, acrobot.state), params.torque);
+    },
+  };
+}
