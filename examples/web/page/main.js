@@ -2,7 +2,7 @@
 
 import { Learner, bangBang, energyLaw } from "./acrobot-rs/policies.js";
 import { connectControls } from "./controls.js";
-import { FULL, Game, UNITS, isUpright, noisy } from "./game.js";
+import { FULL, Game, UNITS, noisy } from "./game.js";
 import { actionsOf, decodeRun, encodeRun } from "./link.js";
 import { numbersOf } from "./numbers.js";
 import { connectPanels } from "./panels.js";
@@ -48,8 +48,7 @@ function start() {
   let nextAt = Infinity;
   /** The run of a link. */
   let recorded = null;
-  /** The seconds since the acrobot is upright, and the steps before the user took over. */
-  let upright = 0;
+  /** The steps before the user took over. */
   let before = 0;
   /** Whether it is paused because who plays cannot play with these parameters. */
   let stuck = false;
@@ -88,7 +87,6 @@ function start() {
     } catch (error) {
       return stick(minus(error.message)); // With extreme physics an energy is infinite.
     }
-    upright = isUpright(game.acrobot.state) ? upright + game.params.dt : 0;
     shown = 0;
     if (game.end === null) return;
     const own = before > 0 ? `, ${game.steps - before} of them yours` : "";
@@ -108,7 +106,7 @@ function start() {
     game.free = isFree() || (run !== null && actionsOf(run) === null);
     rival.begin(seed, params, run?.start);
     rival.free = $("rival").value === "planner";
-    upright = before = 0;
+    before = 0;
     shown = params.dt;
     nextAt = Infinity;
     $("seed").value = seed;
@@ -145,8 +143,11 @@ function start() {
   };
   const next = () => begin(game.seed + 1n);
 
+  /** Both games go on from what is shown. */
+  const goOn = () => [game, rival].forEach((each) => each.cut());
   const play = () => {
     if (playing) return;
+    goOn();
     [playing, stuck] = [true, false];
     if (game.end !== null) reset();
     say(player());
@@ -171,6 +172,7 @@ function start() {
   const single = () => {
     if (playing) pause("Paused.");
     if (game.end !== null) return say("The episode has ended. Press Restart or Next seed.");
+    goOn();
     waits = !panels.isReady($("policy").value);
     if (waits) return;
     step();
@@ -217,7 +219,7 @@ function start() {
   // ---- what the page shows
 
   const { changed, frame: showNumbers } =
-    numbersOf(() => ({ game, rival, upright, playing }));
+    numbersOf(() => ({ game, rival, playing }));
 
   /** Takes the steps that are due. */
   const advance = () => {
@@ -253,7 +255,8 @@ function start() {
     const planner = $("policy").value === "planner" ? planners.get(game) : undefined;
     const pulled = grip && { point: grip.point, target: target() };
     const part = calm.matches ? 1 : Math.min(shown / dt, 1);
-    drawStage(game, part, planner?.path ?? [], pulled);
+    const path = game.steps === game.span[1] ? planner?.path ?? [] : [];
+    drawStage(game, part, path, pulled);
     drawRival($("rival").value === "" ? null : rival, part);
     // Last, because the size of a canvas is only known after the layout.
     showNumbers(now);
@@ -308,6 +311,14 @@ function start() {
   // After a click. Who uses the keyboard may go on with ↑ and ↓.
   const leaves = ({ target }) => target.matches("select:not(:focus-visible)") && target.blur();
   $("app").addEventListener("change", leaves);
+
+  $("scrub").oninput = ({ target }) => {
+    if (playing) pause("Paused. Play goes on from what is shown.");
+    for (const each of [game, rival]) each.seek(Number(target.value));
+    showParams();
+    shown = game.params.dt;
+    changed();
+  };
 
   // ---- settings
 

@@ -15,11 +15,11 @@ const write = (id, text) => $(id).textContent !== text && ($(id).textContent = t
 const verdict = ({ steps, end }) =>
   ({ goal: `Goal! ${steps} steps`, limit: "Out of time" })[end] ?? "";
 
-function showNumbers(game, rival, upright, playing) {
+function showNumbers(game, rival, playing) {
   const name = $("rival").selectedOptions[0].textContent;
   const texts = {
     "step": String(game.steps),
-    "return": game.free ? `${upright.toFixed(1)} s` : minus(String(game.return)),
+    "return": game.free ? `${game.upright.toFixed(1)} s` : minus(String(game.return)),
     "steps-label": game.free ? "Steps" : "Steps (at most 500)",
     "return-label": game.free ? "Upright for" : "Return",
     "pause": playing ? "Pause" : "Play",
@@ -29,6 +29,11 @@ function showNumbers(game, rival, upright, playing) {
   };
   for (const [id, text] of Object.entries(texts)) write(id, text);
   $("rival-score").hidden = $("rival").value === "";
+  const [first, last] = game.span;
+  Object.assign($("scrub"), { min: first, max: last, value: game.steps });
+  const ago = `${number((last - game.steps) * game.params.dt, 1)} s ago`;
+  write("ago", last === game.steps ? "now" : ago);
+  $("scrub").ariaValueText = $("ago").textContent;
 }
 
 function showBits({ numbers }) {
@@ -52,13 +57,13 @@ export function numbersOf(get) {
   const changed = () => (stale = CHARTS.length);
   $("bits").ontoggle = changed;
   const frame = (now) => {
-    const { game, rival, upright, playing } = get();
+    const { game, rival, playing } = get();
     if (stale === 0 || (playing && now - updated < PERIOD)) return;
     updated = now;
     const count = playing ? 1 : CHARTS.length;
     stale -= Math.min(count, stale);
     for (let i = 0; i < count; i++) CHARTS[turn++ % CHARTS.length](game);
-    showNumbers(game, rival, upright, playing);
+    showNumbers(game, rival, playing);
     if (!playing || $("bits").open) showBits(game);
   };
   return { changed, frame };

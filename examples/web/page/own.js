@@ -34,6 +34,7 @@ export function ownPanel({ run, answered, failed, chosen }) {
     clearTimeout(timer);
     worker?.terminate();
     worker = asked = torque = null;
+    id++; // An answer that is on its way is obsolete.
   };
   const fail = (message, line) => {
     end();

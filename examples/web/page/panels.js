@@ -2,7 +2,7 @@
 // opens.
 
 import { animationOf } from "./animation.js";
-import { download } from "./files.js";
+import { csvOf, download } from "./files.js";
 import { levelOf } from "./game.js";
 import { connectShare } from "./share.js";
 import { trainingPanel } from "./training.js";
@@ -24,6 +24,7 @@ const enable = (policy, name) => {
 export function connectPanels(app) {
   const { game, learner, policies } = app;
   connectShare(app);
+  $("csv").onclick = () => download("acrobot.csv", [csvOf(game)], { type: "text/csv" });
   $("animate").onclick = () =>
     download("acrobot.svg", [animationOf(game)], { type: "image/svg+xml" });
 

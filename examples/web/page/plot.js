@@ -23,11 +23,12 @@ scheme?.addEventListener("change", () => colors.clear());
 
 /**
  * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of
- * `marks` is a value and the color of its dashed horizontal line, and `unit` is that of x. If there
- * is a `period`, as of an angle, a line leaves the plot at one edge and returns at the other.
+ * `marks` is a value and the color of its dashed horizontal line, `cursor` is the x of a vertical
+ * one, or null, and `unit` is that of x. If there is a `period`, as of an angle, a line leaves the plot at one edge and returns at the other.
  */
 export function plot(canvas, options) {
-  const { series, range, start = 0, end, unit, marks = [], period = Infinity } = options;
+  const { series, range, start = 0, end, unit, period = Infinity } = options;
+  const { marks = [], cursor = null } = options;
   const { clientWidth: width, clientHeight: height } = canvas;
   const scale = devicePixelRatio;
   const size = [width, height].map((side) => Math.round(side * scale));
@@ -70,6 +71,7 @@ export function plot(canvas, options) {
     context.fillText(text, Math.min(x(tick), last), height - 4);
   });
   for (const [mark, color] of marks) across(mark, color, [4, 4]);
+  if (cursor !== null) line([[x(cursor), top], [x(cursor), top + inner]], color("--text"));
 
   context.beginPath();
   context.rect(left, top - 1, width - left, inner + 2);

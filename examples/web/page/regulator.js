@@ -134,8 +134,9 @@ export function regulatorPanel({ game, play, changed }) {
     context.rect(MARGIN.left, 0, right, low);
     context.clip();
     const count = Math.ceil(PATH / game.params.dt);
-    const [angles, velocities] = [0, 2].map((index) => game.column(index).slice(-count));
-    const points = angles.map((angle, i) => [x(leanOf(angle)), y(velocities[i])]);
+    const end = game.steps - game.span[0] + 1;
+    const path = game.rows.slice(Math.max(end - count, 0), end);
+    const points = path.map(({ numbers }) => [x(leanOf(numbers[0])), y(numbers[2])]);
     line(points, color("--second"), 1.5);
     context.fillStyle = color("--second");
     context.beginPath();

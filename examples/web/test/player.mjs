@@ -43,8 +43,9 @@ export async function open({ hash = "", prepare, starts = true, ...options }, pl
   if (prepare) await page.addInitScript(prepare);
   await page.goto(origin + hash);
   try {
-    if (starts) await page.waitForSelector("#balance:enabled");
-    await page.$$eval(".panel", (panels) => panels.forEach((panel) => (panel.open = true)));
+    await page.$$eval("details", (all) => all.forEach((each) => (each.open = true)));
+    const panels = "#balance:enabled, #policy:has([value=regulator]:enabled), #code:valid";
+    if (starts) for (const panel of panels.split(", ")) await page.waitForSelector(panel);
     await play(page);
     assert.deepEqual(wrong, []);
   } finally {
