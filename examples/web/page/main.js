@@ -260,7 +260,7 @@ function start() {
     drawRival($("rival").value === "" ? null : rival, part);
     // Last, because the size of a canvas is only known after the layout.
     showNumbers(now);
-    panels.frame();
+    panels.frame(now);
     const more = planner?.thinks ? "Planning…" : planner?.message ?? "";
     if (more !== thought) say(said, more);
   };

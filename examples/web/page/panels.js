@@ -87,7 +87,7 @@ export function connectPanels(app) {
   $("regulator").ontoggle = () => $("regulator").open && loadRegulator();
 
   return {
-    frame: () => $("regulator").open && regulator?.frame(),
+    frame: (now) => $("regulator").open && regulator?.frame(now),
     draw: training.draw,
     /** The user's code, if it has run. */
     get code() {

@@ -10,6 +10,8 @@ import { reasonOf } from "./settings.js";
 
 /** The states of the grid in both directions. */
 const SIZE = 48;
+/** The least time between two pictures of the plane, and between two regions, ms. */
+const [PERIOD, REGION_PERIOD] = [30, 100];
 /** How much of the path is shown, s. */
 const PATH = 4;
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
@@ -32,6 +34,7 @@ export function regulatorPanel({ game, play, changed }) {
   let [gain, of, reason] = [null, null, ""];
   let [worker, asked, region] = [null, null, null];
   const canvas = $("plane");
+  let drawn = 0;
 
   /** Computes the gain for the machine, if it has changed. */
   const design = () => {
@@ -76,7 +79,10 @@ export function regulatorPanel({ game, play, changed }) {
     if (gain === null || now === asked) return;
     if (worker === null) {
       worker = new Worker(new URL("region.js", import.meta.url), { type: "module" });
-      worker.onmessage = ({ data }) => ([region, worker.isBusy] = [data, false]);
+      worker.onmessage = ({ data }) => {
+        region = data;
+        setTimeout(() => (worker.isBusy = false), REGION_PERIOD);
+      };
       worker.onerror = ({ message }) => ($("regulator-reason").textContent = message);
     }
     if (worker.isBusy) return;
@@ -165,7 +171,9 @@ export function regulatorPanel({ game, play, changed }) {
   };
 
   return {
-    frame() {
+    frame(now) {
+      if (now - drawn < PERIOD) return;
+      drawn = now;
       design();
       const range = rangeOf(game.acrobot.params);
       ask(range);
