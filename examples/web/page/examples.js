@@ -26,7 +26,7 @@ function torque(state, t) {
   return -(gain[0] * x[0] + gain[1] * x[1] + gain[2] * x[2] + gain[3] * x[3]);
 }
 ` },
-  "Plan and follow": { strong: true, code: `// Plans once, corrects by the plan's gains, and then holds.
+  "Plan and follow": { strong: true, code: `// Plans once, corrects deviations, and then holds.
 let planned;
 function torque(state, t) {
   planned ??= plan(state);

@@ -13,7 +13,7 @@ const over = ([a, b], [c, d]) => {
   return [(a * c + b * d) / square, (b * c - a * d) / square];
 };
 
-/** The eigenvalues of a matrix, as [real, imaginary]: the roots of its characteristic polynomial. */
+/** The eigenvalues of a matrix, [real, imaginary]: the roots of its characteristic polynomial. */
 export function eigenvalues(matrix) {
   const size = matrix.length;
   // Faddeev and LeVerrier.

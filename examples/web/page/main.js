@@ -1,6 +1,7 @@
 // Connects the page to an episode and to the panels.
 
-import { Learner, bangBang, energyLaw } from "./acrobot-rs/policies.js";
+import { bangBang, energyLaw } from "./acrobot-rs/policies.js";
+import { Scores } from "./challenge.js";
 import { connectControls } from "./controls.js";
 import { FULL, Game, UNITS, noisy } from "./game.js";
 import { actionsOf, decodeRun, encodeRun } from "./link.js";
@@ -9,7 +10,7 @@ import { connectPanels } from "./panels.js";
 import { attempt, parametersPanel } from "./parameters.js";
 import { placesOf } from "./places.js";
 import { minus } from "./plot.js";
-import { BALANCE, DEFAULTS, LIMIT, isSame, machineOf, parseSeed } from "./settings.js";
+import { BALANCE, DEFAULTS, LIMIT, isSame, machineOf } from "./settings.js";
 import { drawRival, drawStage, placeAt } from "./stage.js";
 
 const $ = (id) => document.getElementById(id);
@@ -18,7 +19,7 @@ const $ = (id) => document.getElementById(id);
 const INTERVAL = 1500;
 
 function start() {
-  const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
+  const game = new Game(42n, { ...DEFAULTS });
   /** The acrobot to compare with. */
   const rival = new Game(42n, { ...DEFAULTS });
   /** The module of the planner and of pulls, once it has been loaded, and each game's planner. */
@@ -48,6 +49,7 @@ function start() {
   let nextAt = Infinity;
   /** The run of a link. */
   let recorded = null;
+  const scores = new Scores();
   /** The steps before the user took over. */
   let before = 0;
   /** Whether it is paused because who plays cannot play with these parameters. */
@@ -72,6 +74,7 @@ function start() {
   const levelBy = (policy, game) => noisy(policies[policy](game), game.params);
 
   const step = () => {
+    if (scores.pulls !== null) grip = scores.pulls.grip(game);
     try {
       const index = game.steps;
       const policy = $("policy").value;
@@ -88,6 +91,11 @@ function start() {
       return stick(minus(error.message)); // With extreme physics an energy is infinite.
     }
     shown = 0;
+    const fallen = scores.step(game);
+    if (fallen !== null) {
+      grip = null;
+      say(fallen);
+    }
     if (game.end === null) return;
     const own = before > 0 ? `, ${game.steps - before} of them yours` : "";
     const end = game.end === "goal" ? "Goal" : "Out of time";
@@ -97,16 +105,19 @@ function start() {
     say(`${result} ${continues ? "The next seed follows." : "Press Restart or Next seed."}`);
   };
 
-  /** Whether who plays goes on at the goal. */
-  const isFree = () => ["planner", "own", "regulator"].includes($("policy").value);
+  /** Whether who plays goes on at the goal. An own controller plays Gymnasium's game, too. */
+  const isFree = (params = game.params) =>
+    ["planner", "regulator"].includes($("policy").value) ||
+    ($("policy").value === "own" && !isSame(params, DEFAULTS));
 
   /** Begins an episode, or a link's run from the state where it begins. */
   const begin = (seed, params = game.params, run = replayed()) => {
     game.begin(seed, params, run?.start);
-    game.free = isFree() || (run !== null && actionsOf(run) === null);
+    game.free = isFree(params) || (run !== null && actionsOf(run) === null);
     rival.begin(seed, params, run?.start);
     rival.free = $("rival").value === "planner";
     before = 0;
+    scores.begin();
     shown = params.dt;
     nextAt = Infinity;
     $("seed").value = seed;
@@ -121,7 +132,8 @@ function start() {
     const { seed, params } = game;
     const policy = run === recorded ? recorded.policy : $("policy").value;
     const controller = policy === "own" ? panels.code : undefined;
-    history.replaceState(null, "", encodeRun({ ...run, seed, params, policy, controller }));
+    const more = { seed, params, policy, controller, scores: scores.all };
+    history.replaceState(null, "", encodeRun({ ...run, ...more }));
   };
   const replayed = () => ($("policy").value === "link" ? recorded : null);
 
@@ -130,6 +142,8 @@ function start() {
     if (game.steps === 0 || game.end !== null || replayed()) begin(game.seed, params);
     else {
       for (const each of [game, rival]) each.change(params);
+      scores.begin();
+      if (isFree()) game.release();
       shown = params.dt;
       address();
       changed();
@@ -218,8 +232,7 @@ function start() {
 
   // ---- what the page shows
 
-  const { changed, frame: showNumbers } =
-    numbersOf(() => ({ game, rival, playing }));
+  const { changed, frame: showNumbers } = numbersOf(() => ({ game, rival, playing, scores }));
 
   /** Takes the steps that are due. */
   const advance = () => {
@@ -240,29 +253,28 @@ function start() {
     const elapsed = Math.min(Math.max(now - last, 0), 100) / 1000;
     last = now;
     const { dt } = game.params;
+    const more = elapsed * Number($("pace").value);
     if (playing && game.end === null) {
       // Not more than a picture's worth, if the own controller has not answered.
-      shown = Math.min(shown, dt) + elapsed * Number($("pace").value);
+      shown = Math.min(shown, dt) + more;
       advance();
-    } else {
-      shown = Math.min(shown + elapsed * Number($("pace").value), dt);
-    }
+    } else shown = Math.min(shown + more, dt);
     if (now >= nextAt && playing) {
       const { hidden } = $("link-field");
       next();
       $("link-field").hidden = hidden;
     }
-    const planner = $("policy").value === "planner" ? planners.get(game) : undefined;
+    const planner = $("policy").value === "planner" && planners.get(game);
     const pulled = grip && { point: grip.point, target: target() };
     const part = calm.matches ? 1 : Math.min(shown / dt, 1);
-    const path = game.steps === game.span[1] ? planner?.path ?? [] : [];
-    drawStage(game, part, path, pulled);
+    const path = game.steps === game.span[1] && planner?.path;
+    drawStage(game, part, path || [], pulled);
     drawRival($("rival").value === "" ? null : rival, part);
     // Last, because the size of a canvas is only known after the layout.
     showNumbers(now);
     panels.frame(now);
-    const more = planner?.thinks ? "Planning…" : planner?.message ?? "";
-    if (more !== thought) say(said, more);
+    const thinks = planner?.thinks ? "Planning…" : planner?.message ?? "";
+    if (thinks !== thought) say(said, thinks);
   };
 
   // ---- keys and buttons
@@ -277,6 +289,7 @@ function start() {
     hold,
     grip(pulled) {
       grip = pulled;
+      scores.begin();
       // A replay has its own pushes.
       if (grip !== null && $("policy").value === "link") choose("keys");
     },
@@ -296,14 +309,6 @@ function start() {
     if (policy === "planner") strengthen();
   };
   $("policy").onchange = ({ target }) => select(target.value);
-  for (const option of $("policy").options) {
-    if (!["keys", "link", "own"].includes(option.value)) $("rival").append(option.cloneNode(true));
-  }
-  $("rival").onchange = ({ target: { value } }) => {
-    begin(game.seed);
-    const name = $("rival").selectedOptions[0].textContent;
-    if (value !== "") say(`${name} plays behind it, from the same seed, with the same pulls.`);
-  };
   $("balance").onclick = () => {
     select("planner");
     play();
@@ -312,22 +317,7 @@ function start() {
   const leaves = ({ target }) => target.matches("select:not(:focus-visible)") && target.blur();
   $("app").addEventListener("change", leaves);
 
-  $("scrub").oninput = ({ target }) => {
-    if (playing) pause("Paused. Play goes on from what is shown.");
-    for (const each of [game, rival]) each.seek(Number(target.value));
-    showParams();
-    shown = game.params.dt;
-    changed();
-  };
-
   // ---- settings
-
-  $("seed").value = game.seed;
-  $("seed").oninput = ({ target }) => {
-    const { value } = target;
-    attempt(target, $("seed-reason"), () => begin(parseSeed(value)));
-    target.value = value;
-  };
 
   const showParams = parametersPanel(
     () => game.params,
@@ -340,7 +330,17 @@ function start() {
   // ---- links, files, and the panels
 
   const panels = connectPanels({
-    game, learner, policies, changed, begin, choose, play, stick, say, address, strengthen,
+    game, rival, policies, scores, changed, begin, choose, play, stick, say, address,
+    strengthen,
+    /** Shows the state after one of the last steps. */
+    seek(step) {
+      if (playing) pause("Paused. Play goes on from what is shown.");
+      for (const each of [game, rival]) each.seek(step);
+      scores.begin();
+      showParams();
+      shown = game.params.dt;
+      changed();
+    },
     answered: () => (waits ? single() : advance()),
     beginAt(start) {
       begin(game.seed, game.params, { start, levels: [], pushes: [] });
@@ -353,6 +353,7 @@ function start() {
     if (hash.length <= 1) return;
     try {
       const run = decodeRun(hash);
+      scores.best = run.scores;
       begin(run.seed, run.params, run);
       recorded = run;
       const { length } = run.levels;
@@ -370,14 +371,6 @@ function start() {
     }
   };
   addEventListener("hashchange", () => open(location.hash));
-
-  for (const query of ["(prefers-color-scheme: dark)", "(prefers-reduced-motion: reduce)"]) {
-    matchMedia(query).addEventListener("change", () => {
-      panels.draw();
-      changed();
-    });
-  }
-  new ResizeObserver(changed).observe($("energy"));
 
   const { hash } = location;
   showParams();

@@ -3,11 +3,15 @@
 import { CHARTS, number } from "./charts.js";
 import { isUpright } from "./game.js";
 import { minus } from "./plot.js";
+import { DEFAULTS, isSame } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
 /** The least time between two updates while it plays, ms. */
 const PERIOD = 30;
+
+/** The best known mean return, of docs/optimum.md. */
+const BEST = -58.69;
 
 /** The same text again would need another layout. */
 const write = (id, text) => $(id).textContent !== text && ($(id).textContent = text);
@@ -15,19 +19,34 @@ const write = (id, text) => $(id).textContent !== text && ($(id).textContent = t
 const verdict = ({ steps, end }) =>
   ({ goal: `Goal! ${steps} steps`, limit: "Out of time" })[end] ?? "";
 
-function showNumbers(game, rival, playing) {
+/** The number and the label of the score: of growing pulls, of standing, or of the game. */
+function scoreOf(game, { pulls, best }) {
+  if (pulls) {
+    const toBeat = best.held === undefined ? "" : `, to beat: ${best.held.toFixed(1)} s`;
+    return [`${pulls.held.toFixed(1)} s`, `Held, pull ${pulls.count}${toBeat}`];
+  }
+  if (game.free) return [`${game.upright.toFixed(1)} s`, "Upright for"];
+  const toBeat = best.return === undefined ? `best known: ${BEST}` : `to beat: ${best.return}`;
+  const label = isSame(game.params, DEFAULTS) ? `Return, ${toBeat}` : "Return";
+  return [game.return, label].map((text) => minus(String(text)));
+}
+
+function showNumbers({ game, rival, playing, scores }) {
+  const [score, scoreLabel] = scoreOf(game, scores);
   const name = $("rival").selectedOptions[0].textContent;
   const texts = {
     "step": String(game.steps),
-    "return": game.free ? `${game.upright.toFixed(1)} s` : minus(String(game.return)),
+    "return": score,
     "steps-label": game.free ? "Steps" : "Steps (at most 500)",
-    "return-label": game.free ? "Upright for" : "Return",
+    "return-label": scoreLabel,
     "pause": playing ? "Pause" : "Play",
     "verdict": verdict(game),
     "rival-label": `Grey: ${name}`,
     "rival-steps": isUpright(rival.acrobot.state) ? "upright" : verdict(rival) || `${rival.steps}`,
   };
   for (const [id, text] of Object.entries(texts)) write(id, text);
+  $("balance").hidden = game.free;
+  $("challenge").hidden = !game.free || scores.pulls !== null;
   $("rival-score").hidden = $("rival").value === "";
   const [first, last] = game.span;
   Object.assign($("scrub"), { min: first, max: last, value: game.steps });
@@ -57,13 +76,14 @@ export function numbersOf(get) {
   const changed = () => (stale = CHARTS.length);
   $("bits").ontoggle = changed;
   const frame = (now) => {
-    const { game, rival, playing } = get();
+    const shown = get();
+    const { game, playing } = shown;
     if (stale === 0 || (playing && now - updated < PERIOD)) return;
     updated = now;
     const count = playing ? 1 : CHARTS.length;
     stale -= Math.min(count, stale);
     for (let i = 0; i < count; i++) CHARTS[turn++ % CHARTS.length](game);
-    showNumbers(game, rival, playing);
+    showNumbers(shown);
     if (!playing || $("bits").open) showBits(game);
   };
   return { changed, frame };

@@ -17,7 +17,8 @@ let count = 0;
 /** Throws in a loop that takes too long. Otherwise it is true. */
 function $loop(line) {
   if (count++ % 256 > 0 || performance.now() < deadline) return true;
-  throw Object.assign(new Error(`the loop did not end within ${LIMIT / 1000} s`), { ownLine: line });
+  const error = new Error(`the loop did not end within ${LIMIT / 1000} s`);
+  throw Object.assign(error, { ownLine: line });
 }
 
 /** The functions that the user's code calls. */

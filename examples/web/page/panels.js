@@ -1,9 +1,12 @@
 // Connects the panels to the episode. What a first visit does not need is loaded when its panel
 // opens.
 
+import { Learner } from "./acrobot-rs/policies.js";
 import { animationOf } from "./animation.js";
 import { csvOf, download } from "./files.js";
 import { levelOf } from "./game.js";
+import { attempt } from "./parameters.js";
+import { parseSeed } from "./settings.js";
 import { connectShare } from "./share.js";
 import { trainingPanel } from "./training.js";
 
@@ -22,13 +25,34 @@ const enable = (policy, name) => {
 
 /** Connects the panels to the functions of main.js. */
 export function connectPanels(app) {
-  const { game, learner, policies } = app;
+  const { game, policies } = app;
   connectShare(app);
+  $("scrub").oninput = ({ target }) => app.seek(Number(target.value));
+  $("seed").value = game.seed;
+  $("seed").oninput = ({ target }) => {
+    const { value } = target;
+    attempt(target, $("seed-reason"), () => app.begin(parseSeed(value)));
+    target.value = value;
+  };
+  for (const option of $("policy").options) {
+    if (!["keys", "link", "own"].includes(option.value)) $("rival").append(option.cloneNode(true));
+  }
+  $("rival").onchange = ({ target: { value } }) => {
+    app.begin(game.seed);
+    const name = $("rival").selectedOptions[0].textContent;
+    if (value !== "") app.say(`${name} plays behind it, from the same seed, with the same pulls.`);
+  };
+  $("challenge").onclick = () => {
+    app.scores.pull();
+    app.play();
+    app.say("Once it stands for 1 s, pulls begin, each one harder. How long does it hold?");
+    app.changed();
+  };
   $("csv").onclick = () => download("acrobot.csv", [csvOf(game)], { type: "text/csv" });
   $("animate").onclick = () =>
     download("acrobot.svg", [animationOf(game)], { type: "image/svg+xml" });
 
-  const training = trainingPanel(learner, {
+  const training = trainingPanel(new Learner(), {
     ...app,
     ready(policy) {
       policies.learnt = policy;
@@ -40,6 +64,14 @@ export function connectPanels(app) {
       app.play();
     },
   });
+
+  for (const query of ["(prefers-color-scheme: dark)", "(prefers-reduced-motion: reduce)"]) {
+    matchMedia(query).addEventListener("change", () => {
+      training.draw();
+      app.changed();
+    });
+  }
+  new ResizeObserver(app.changed).observe($("energy"));
 
   /** The user's controller, once its panel has been opened. */
   let own = null;
@@ -88,7 +120,6 @@ export function connectPanels(app) {
 
   return {
     frame: (now) => $("regulator").open && regulator?.frame(now),
-    draw: training.draw,
     /** The user's code, if it has run. */
     get code() {
       return own?.code ?? undefined;

@@ -18,7 +18,7 @@ export function attempt(field, reason, set) {
   }
 }
 
-/** `get` returns the parameters, `take` takes them or throws. Returns a function that shows them. */
+/** `get` returns parameters, `take` takes them or throws. Returns a function that shows them. */
 export function parametersPanel(get, take) {
   const showMachine = () => ($("machine").value = machineOf(get()));
   const set = (params) => {

@@ -64,6 +64,8 @@ test("an invalid link is rejected with the reason", () => {
     ["#state=1_2_3", /^state must be 4 numbers, got \[1,2,3\]$/],
     ["#policy=learnt", /^policy in the link must be planner, .*, got "learnt"$/],
     [`#controller=${"a".repeat(4001)}`, /^controller must have at most 4000 characters, got ""$/],
+    ["#return=1", /^return must be from -500 to 0, got "1"$/],
+    ["#held=x", /^held must be from 0 to 1000000, got "x"$/],
     ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
   ]) {
     assert.throws(() => decodeRun(bad), { message });
@@ -90,7 +92,7 @@ test("the link of a game without an end replays the bits of its last steps", () 
   game.step(FULL, [UNITS, -UNITS / 2]);
   assert.deepEqual(game.acrobot.state, other.state);
 
-  const { seed, params, start, levels, pushes } = decodeRun(encodeRun(game));
+  const { seed, params, start, levels, pushes } = decodeRun(encodeRun({ ...game, scores: {} }));
   assert.deepEqual([levels.length, game.steps, game.end], [500, 701, null]);
   const replay = new Game(seed, params);
   replay.begin(seed, params, start);
@@ -115,7 +117,7 @@ test("a game goes back, and on from there with the same bits", () => {
     other.seek(step);
     other.cut();
     assert.deepEqual([other.span[1], other.levels.length], [step, kept]);
-    const { seed, params, start, levels, pushes } = decodeRun(encodeRun(other));
+    const { seed, params, start, levels, pushes } = decodeRun(encodeRun({ ...other, scores: {} }));
     const replay = new Game(seed, params);
     replay.begin(seed, params, start);
     replay.free = true;
@@ -163,9 +165,12 @@ test("any link is replayed or is rejected with the reason", () => {
   // A zero with a sign.
   const params = { ...DEFAULTS, mass1: 1.5, dt: 0.05, gravity: -0, dynamics: "nips" };
   const levels = ACTIONS.map((action) => FULL * (action - 1));
-  const run = { seed: 42n, params, policy: undefined, controller: undefined, start: null, levels };
+  const player = { policy: undefined, controller: undefined, scores: {} };
+  const run = { seed: 42n, params, ...player, start: null, levels };
   const short = { ...run, pushes: levels.map(() => null) };
-  const pushed = { ...short, policy: "planner", controller: "a\n&b", pushes: levels.map(() => [UNITS, -1]) };
+  const scores = { return: -70, held: 2.5 };
+  const pushes = levels.map(() => [UNITS, -1]);
+  const pushed = { ...short, policy: "planner", scores, controller: "a\n&b", pushes };
   const start = { theta1: 1, theta2: -0.5, dtheta1: 1e-9, dtheta2: -0 };
   const links = [short, { ...pushed, start }, pushed].map((run) => {
     assert.deepEqual(decodeRun(encodeRun(run)), run);

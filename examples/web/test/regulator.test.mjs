@@ -8,10 +8,16 @@ import { onPage, says, shows, text } from "./player.mjs";
 
 test("eigenvalues are those of a matrix", () => {
   for (const [matrix, expected] of [
-    [[[2, 1, 0, 0], [0, 3, 0, 5], [0, 0, -1, 1], [0, 0, 0, 0.5]], [[-1, 0], [0.5, 0], [2, 0], [3, 0]]],
-    [[[0, 1, 0, 7], [-4, 0, 3, 0], [0, 0, 1, -1], [0, 0, 1, 1]], [[0, -2], [0, 2], [1, -1], [1, 1]]],
+    [
+      [[2, 1, 0, 0], [0, 3, 0, 5], [0, 0, -1, 1], [0, 0, 0, 0.5]],
+      [[-1, 0], [0.5, 0], [2, 0], [3, 0]],
+    ],
+    [
+      [[0, 1, 0, 7], [-4, 0, 3, 0], [0, 0, 1, -1], [0, 0, 1, 1]],
+      [[0, -2], [0, 2], [1, -1], [1, 1]],
+    ],
   ]) {
-    const found = eigenvalues(matrix).sort(([a, b], [c, d]) => a - c || b - d);
+    const found = eigenvalues(matrix);
     found.sort(([a, b], [c, d]) => Math.round(1e6 * (a - c)) || b - d);
     found.flat().forEach((value, i) => {
       assert.ok(Math.abs(value - expected.flat()[i]) < 1e-6, `${found}`);

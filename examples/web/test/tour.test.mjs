@@ -104,6 +104,18 @@ onPage("one goes back, and on from there, and saves the run", {}, async (page) =
   assert.equal((await linked(page)).levels.map(Math.sign).join(), "1,1,-1,-1,0,0");
 });
 
+onPage("who plays changes without a jump", {}, async (page) => {
+  await page.click("#balance");
+  await page.waitForFunction(() => document.querySelector("#step").textContent > 60);
+  await page.click("#pause");
+  const state = await shownBits(page);
+  for (const policy of ["keys", "bang_bang", "planner", "energy_law"]) {
+    await page.selectOption("#policy", policy);
+    await showsBits(page, state);
+    assert.equal(await page.inputValue("#machine"), "Gymnasium, 5 N m");
+  }
+});
+
 onPage("keys push the tip, in every policy", {}, async (page) => {
   await paused(page, 42);
   await page.focus("#stage");
