@@ -5,9 +5,9 @@ import { actionsOf } from "./link.js";
 import { DEFAULTS, isSame } from "./settings.js";
 
 /** From one pull to the next, how long one takes, and how long it must stand before the first, s. */
-const [PERIOD, DURATION, STANDING] = [4, 0.2, 1];
+const [PERIOD, DURATION, STANDING] = [3, 0.2, 1];
 /** How much farther each pull goes than the one before, as a part of both lengths. */
-const GROWTH = 0.02;
+const GROWTH = 0.005;
 
 class Pulls {
   /** How long it has held, s, and the number of pulls. */
@@ -42,6 +42,12 @@ export class Scores {
 
   begin() {
     [this.pulls, this.#own] = [null, {}];
+  }
+
+  /** Another machine has other scores. */
+  change() {
+    this.begin();
+    delete this.best.held;
   }
 
   pull() {

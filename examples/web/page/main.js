@@ -139,10 +139,10 @@ function start() {
 
   /** Changes the parameters at once, except where another episode must begin. */
   const setPhysics = (params) => {
+    scores.change();
     if (game.steps === 0 || game.end !== null || replayed()) begin(game.seed, params);
     else {
       for (const each of [game, rival]) each.change(params);
-      scores.begin();
       if (isFree()) game.release();
       shown = params.dt;
       address();
@@ -353,7 +353,7 @@ function start() {
     if (hash.length <= 1) return;
     try {
       const run = decodeRun(hash);
-      scores.best = run.scores;
+      scores.best = { ...run.scores };
       begin(run.seed, run.params, run);
       recorded = run;
       const { length } = run.levels;

@@ -102,7 +102,7 @@ export class PlannerPolicy {
 
   /** Keeps the plan if it still ends upright. Otherwise asks for another one. */
   #replan(state, isPulled) {
-    const done = this.#ahead[0]?.step ?? 0;
+    const done = this.#ahead[0]?.step ?? this.#step;
     this.thinks = false;
     this.#id++;
     this.#from(state, done);

@@ -45,3 +45,16 @@ test("pulls grow until it falls, and a link has the seconds", async () => {
     assert.equal(await page.isVisible("#challenge"), false);
   });
 });
+
+onPage("the planner holds against pulls that grow", {}, async (page) => {
+  await page.click("#balance");
+  await page.selectOption("#pace", "4");
+  await says(page, "#return", /^[2-9]\.\d s$/);
+  await page.click("#challenge");
+  await says(page, "#return-label", /^Held, pull 4$/);
+  // What is to beat belongs to its machine.
+  await says(page, "#status", /^It held for .* That is the score to beat\./);
+  await page.fill("#mass1", "1.1");
+  await page.click("#challenge");
+  assert.doesNotMatch(await text(page, "#return-label"), /to beat/);
+});
