@@ -5,7 +5,7 @@ import { linearizeStep, regulator } from "./acrobot-rs/control.js";
 import { number } from "./charts.js";
 import { levelOf } from "./game.js";
 import { eigenvalues, leanOf, torqueBy } from "./law.js";
-import { color, label, minus, ticks } from "./plot.js";
+import { axes, color, minus, valuesAt } from "./plot.js";
 import { reasonOf } from "./settings.js";
 
 /** The states of the grid in both directions. */
@@ -16,7 +16,6 @@ const [PERIOD, REGION_PERIOD] = [30, 100];
 const PATH = 4;
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
 const NAMES = ["θ1", "θ2", "θ1′", "θ2′", "Torque"];
-const MARGIN = { left: 40, bottom: 20 };
 
 const $ = (id) => document.getElementById(id);
 
@@ -96,54 +95,21 @@ export function regulatorPanel({ game, play, changed }) {
   };
 
   const draw = ([width, height]) => {
-    const { clientWidth, clientHeight } = canvas;
-    const size = [clientWidth, clientHeight].map((side) => Math.round(side * devicePixelRatio));
-    if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
-    const context = canvas.getContext("2d");
-    context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
-    context.clearRect(0, 0, clientWidth, clientHeight);
-    const [right, low] = [clientWidth - MARGIN.left, clientHeight - MARGIN.bottom];
-    const x = (value) => MARGIN.left + ((value / width + 1) / 2) * right;
-    const y = (value) => ((1 - value / height) / 2) * low;
-
+    const ranges = [[-width, width], "rad", [-height, height]];
+    const { context, x, y, line } = axes(canvas, ...ranges);
     context.fillStyle = color("--region");
-    const edge = (i, side) => Math.round((i * side) / SIZE);
+    const edge = (i) => (2 * i) / SIZE - 1;
     for (let i = 0; region !== null && i < SIZE * SIZE; i++) {
       const [column, row] = [i % SIZE, Math.floor(i / SIZE)];
-      const [left, top] = [edge(column, right), edge(row, low)];
-      const size = [edge(column + 1, right) - left, edge(row + 1, low) - top];
-      if (region[i]) context.fillRect(MARGIN.left + left, top, ...size);
+      const [left, right] = [column, column + 1].map((i) => Math.round(x(width * edge(i))));
+      const [top, bottom] = [row, row + 1].map((i) => Math.round(y(-height * edge(i))));
+      if (region[i]) context.fillRect(left, top, right - left, bottom - top);
     }
-    context.font = `11px ${getComputedStyle(canvas).fontFamily}`;
-    context.textAlign = "center";
-    const line = (points, style, width = 1) => {
-      Object.assign(context, { strokeStyle: style, lineWidth: width, lineJoin: "round" });
-      context.beginPath();
-      for (const point of points) context.lineTo(...point);
-      context.stroke();
-    };
-    const text = (words, at) => {
-      context.fillStyle = color("--muted");
-      context.fillText(words, ...at);
-    };
-    for (const tick of ticks(-width, width, 4)) {
-      line([[x(tick), 0], [x(tick), low]], color("--grid"));
-      text(label(tick), [x(tick), clientHeight - 5]);
-    }
-    context.textAlign = "right";
-    for (const tick of ticks(-height, height, 4)) {
-      line([[MARGIN.left, y(tick)], [clientWidth, y(tick)]], color("--grid"));
-      text(label(tick), [MARGIN.left - 6, y(tick) + 4]);
-    }
-    context.save();
-    context.beginPath();
-    context.rect(MARGIN.left, 0, right, low);
-    context.clip();
-    const count = Math.ceil(PATH / game.params.dt);
     const end = game.steps - game.span[0] + 1;
-    const path = game.rows.slice(Math.max(end - count, 0), end);
+    const first = Math.max(end - Math.ceil(PATH / game.params.dt), 0);
+    const path = game.rows.slice(first, end);
     const points = path.map(({ numbers }) => [x(leanOf(numbers[0])), y(numbers[2])]);
-    line(points, color("--second"), 1.5);
+    line(points, color("--second"));
     context.fillStyle = color("--second");
     context.beginPath();
     context.arc(...points.at(-1), 4, 0, 2 * Math.PI);
@@ -164,9 +130,8 @@ export function regulatorPanel({ game, play, changed }) {
   };
   canvas.onclick = ({ offsetX, offsetY }) => {
     const range = rangeOf(game.acrobot.params);
-    const across = 2 * (offsetX - MARGIN.left) / (canvas.clientWidth - MARGIN.left) - 1;
-    const up = 1 - (2 * offsetY) / (canvas.clientHeight - MARGIN.bottom);
-    const [theta1, dtheta1] = [Math.PI + across * range[0], up * range[1]];
+    const [x, y] = valuesAt(canvas, offsetX, offsetY);
+    const [theta1, dtheta1] = [Math.PI + x * range[0], y * range[1]];
     play({ ...sliceOf(range), theta1, dtheta1 });
   };
 
