@@ -48,6 +48,14 @@ onPage("what fails has words and a line, and the page goes on", {}, async (page)
     ["const torque = 1;", /^the code needs function torque\(state, t\)\.$/],
     ["function torque() {\n  return 'a';\n}", /^torque must return a finite number, N m, got a\.$/],
     ["function torque() {\n  return eval('1');\n}", /^Line 2, .* EvalError/],
+    // The page's content security policy lets it reach no other site.
+    [`let to = "";
+      addEventListener("securitypolicyviolation", (event) => (to = event.blockedURI));
+      fetch("https://gymnasium.farama.org/").catch(() => {});
+      function torque() {
+        if (to !== "") throw new Error("blocked: " + to);
+        return 0;
+      }`, /“if .*: blocked: https:\/\/gymnasium\.farama\.org/],
   ]) {
     await run(page, code);
     await says(page, "#code-reason", reason);
