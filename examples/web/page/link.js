@@ -30,7 +30,7 @@ export function encodeRun(run) {
     if (value !== DEFAULTS[name]) fields.set(name, textOf(value));
   }
   if (POLICIES.includes(policy)) fields.set("policy", policy);
-  if (controller !== undefined) fields.set("controller", controller.slice(0, CODE));
+  if (controller !== undefined) fields.set("controller", controller);
   for (const [name, score] of Object.entries(scores)) fields.set(name, textOf(score));
   const actions = actionsOf(run);
   const pushed = pushes.flatMap((push, step) => (push === null ? [] : [step, ...push]));

@@ -25,7 +25,7 @@ const NAMES = "$loop, UPRIGHT, params, energy, deviation, diagonal, linearize, r
  * with the reason for which there is none, and `chosen` with an example.
  */
 export function ownPanel({ run, answered, failed, chosen }) {
-  let [worker, timer, code] = [null, 0, null];
+  let [worker, url, timer, code] = [null, "", 0, null];
   /** The last question, and the run in which it was asked. */
   let [id, asked, since] = [0, null, 0];
   let torque = null;
@@ -33,6 +33,7 @@ export function ownPanel({ run, answered, failed, chosen }) {
   const end = () => {
     clearTimeout(timer);
     worker?.terminate();
+    URL.revokeObjectURL(url);
     worker = asked = torque = null;
     id++; // An answer that is on its way is obsolete.
   };
@@ -48,7 +49,8 @@ export function ownPanel({ run, answered, failed, chosen }) {
     $("code-reason").textContent = "";
     $("code").removeAttribute("aria-invalid");
     const script = new Blob([scriptOf(watched(code))], { type: "text/javascript" });
-    worker = new Worker(URL.createObjectURL(script));
+    url = URL.createObjectURL(script);
+    worker = new Worker(url);
     worker.onmessage = ({ data }) => {
       if (data.id !== id) return;
       clearTimeout(timer);
