@@ -21,8 +21,9 @@ const NAMES = "$loop, UPRIGHT, params, energy, deviation, diagonal, linearize, r
   "planTorque";
 
 /**
- * Calls `run` when the user wants the code to play, `answered` when a torque has come, `failed`
- * with the reason for which there is none, and `chosen` with an example.
+ * Calls `run` when the user wants the code to play, with whether it begins upright, `answered`
+ * when a torque has come, `failed` with the reason for which there is none, and `chosen` with an
+ * example.
  */
 export function ownPanel({ run, answered, failed, chosen }) {
   let [worker, url, timer, code] = [null, "", 0, null];
@@ -98,12 +99,14 @@ export function ownPanel({ run, answered, failed, chosen }) {
     $("code").value = EXAMPLES[target.value].code;
     chosen(EXAMPLES[target.value]);
   };
-  $("run").onclick = () => {
+  const take = (stands) => {
     end();
     code = $("code").value;
     $("code-origin").hidden = true;
-    run();
+    run(stands);
   };
+  $("run").onclick = () => take(false);
+  $("run-upright").onclick = () => take(true);
   $("code").onkeydown = (event) => event.key === "Enter" && event.ctrlKey && $("run").click();
   if ($("code").value === "") $("code").value = EXAMPLES["Swing up by energy"].code;
   return own;

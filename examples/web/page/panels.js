@@ -1,14 +1,11 @@
 // Connects the panels to the episode. What a first visit does not need is loaded when its panel
 // opens.
 
-import { Learner } from "./acrobot-rs/policies.js";
-import { animationOf } from "./animation.js";
 import { csvOf, download } from "./files.js";
 import { levelOf } from "./game.js";
 import { attempt } from "./parameters.js";
 import { parseSeed } from "./settings.js";
 import { connectShare } from "./share.js";
-import { trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -49,10 +46,27 @@ export function connectPanels(app) {
     app.changed();
   };
   $("csv").onclick = () => download("acrobot.csv", [csvOf(game)], { type: "text/csv" });
-  $("animate").onclick = () =>
+  $("animate").onclick = async () => {
+    const { animationOf } = await import("./animation.js");
     download("acrobot.svg", [animationOf(game)], { type: "image/svg+xml" });
+  };
 
-  const training = trainingPanel(new Learner(), {
+  /** What panels have made, by their ids, which are names of modules. */
+  const made = {};
+  const onOpen = (id, make) => {
+    const load = async () => {
+      try {
+        const module = await import(`./${id}.js`);
+        made[id] ??= make(module);
+      } catch ({ message }) {
+        app.say(`The panel could not be loaded: ${message}.`);
+      }
+    };
+    $(id).ontoggle = () => $(id).open && load();
+    return load;
+  };
+
+  onOpen("training", ({ trainingPanel }) => trainingPanel({
     ...app,
     ready(policy) {
       policies.learnt = policy;
@@ -63,75 +77,56 @@ export function connectPanels(app) {
       app.begin(game.seed);
       app.play();
     },
-  });
-
+  }));
   for (const query of ["(prefers-color-scheme: dark)", "(prefers-reduced-motion: reduce)"]) {
     matchMedia(query).addEventListener("change", () => {
-      training.draw();
+      made.training?.draw();
       app.changed();
     });
   }
   new ResizeObserver(app.changed).observe($("energy"));
 
-  /** The user's controller, once its panel has been opened. */
-  let own = null;
-  const loadOwn = async () => {
-    const { ownPanel } = await import("./own.js");
-    own ??= ownPanel({
-      run() {
-        enable("own", "Your own controller");
-        app.choose("own");
-        app.play();
-      },
-      answered: app.answered,
-      failed: app.stick,
-      chosen: ({ strong }) => strong && app.strengthen(),
-    });
-    policies.own = (game) => levelOf(own.torqueAt(game), game.params.torque);
-  };
-  $("run-upright").onclick = () => {
-    app.beginAt(UPRIGHT);
-    $("run").click();
-  };
-  $("controller").ontoggle = () => $("controller").open && loadOwn();
-
-  let regulator = null;
-  const playRegulator = () => {
-    app.choose("regulator");
+  /** Lets a policy play, from a state if there is one. */
+  const starts = (policy, state) => {
+    if (state) app.beginAt(state);
+    app.choose(policy);
     app.play();
   };
-  const loadRegulator = async () => {
-    const { regulatorPanel } = await import("./regulator.js");
-    if (regulator !== null) return;
-    const play = (state) => {
-      app.beginAt(state);
-      playRegulator();
-    };
-    regulator = regulatorPanel({ game, play, changed: app.changed });
-    policies.regulator = regulator.act;
+
+  policies.own = (game) => levelOf(made.own.torqueAt(game), game.params.torque);
+  const loadOwn = onOpen("own", ({ ownPanel }) => ownPanel({
+    run(stands) {
+      enable("own", "Your own controller");
+      starts("own", stands && UPRIGHT);
+    },
+    answered: app.answered,
+    failed: app.stick,
+    chosen: ({ strong }) => strong && app.strengthen(),
+  }));
+
+  policies.regulator = (game) => made.regulator.act(game);
+  onOpen("regulator", ({ regulatorPanel }) => {
+    const play = (state) => starts("regulator", state);
+    $("regulate").onclick = () => play();
+    $("regulate-upright").onclick = () => play(UPRIGHT);
     enable("regulator", "Regulator");
-  };
-  $("regulate").onclick = () => regulator && playRegulator();
-  $("regulate-upright").onclick = () => {
-    app.beginAt(UPRIGHT);
-    $("regulate").click();
-  };
-  $("regulator").ontoggle = () => $("regulator").open && loadRegulator();
+    return regulatorPanel({ game, play, changed: app.changed });
+  });
 
   return {
-    frame: (now) => $("regulator").open && regulator?.frame(now),
+    frame: (now) => $("regulator").open && made.regulator?.frame(now),
     /** The user's code, if it has run. */
     get code() {
-      return own?.code ?? undefined;
+      return made.own?.code ?? undefined;
     },
     /** Whether a policy knows the torque of the next step. The own controller answers later. */
-    isReady: (policy) => policy !== "own" || own.torqueAt(game) !== null,
+    isReady: (policy) => policy !== "own" || made.own.torqueAt(game) !== null,
     /** Shows the controller of a link, which begins only with a click. */
     async show(code) {
       document.querySelector("[value=own]").disabled = true;
-      $("controller").open = true;
+      $("own").open = true;
       await loadOwn();
-      own.show(code);
+      made.own.show(code);
       app.say($("code-origin").textContent);
     },
   };

@@ -1,6 +1,6 @@
 // The panel "Train a policy": a worker, the learning curve, and files of weights.
 
-import { Perceptron, bangBang } from "./acrobot-rs/policies.js";
+import { Learner, Perceptron, bangBang } from "./acrobot-rs/policies.js";
 import { download } from "./files.js";
 import { FULL, Game } from "./game.js";
 import { attempt } from "./parameters.js";
@@ -39,7 +39,8 @@ function meanReturn(policy, params) {
  * Calls `ready` with each learnt policy, `drive` when the user wants to watch it, and `say` with
  * the result of a training.
  */
-export function trainingPanel(learner, { ready, drive, game, say }) {
+export function trainingPanel({ ready, drive, game, say }) {
+  const learner = new Learner();
   let worker = null;
   let weights = null;
   /** From the first whole window on. Means of fewer episodes would be a spike. */

@@ -86,7 +86,7 @@ test("the user's own controller plays, and stops with a line", async () => {
     await page.goto(origin);
     await loads(page);
     await page.evaluate(help);
-    await page.evaluate(() => (document.querySelector("#controller").open = true));
+    await page.evaluate(() => (document.querySelector("#own").open = true));
     await page.waitForFunction(() => document.querySelector("#code").value !== "");
     await page.evaluate(() => (select("#example", "LQR"), click("#run-upright")));
     await page.waitForFunction(holds);

@@ -44,8 +44,9 @@ export async function open({ hash = "", prepare, starts = true, ...options }, pl
   await page.goto(origin + hash);
   try {
     await page.$$eval("details", (all) => all.forEach((each) => (each.open = true)));
-    const panels = "#balance:enabled, #policy:has([value=regulator]:enabled), #code:valid";
-    if (starts) for (const panel of panels.split(", ")) await page.waitForSelector(panel);
+    const loaded = ["#balance:enabled", "#policy:has([value=regulator]:enabled)", "#code:valid",
+      "#curve[width]"];
+    if (starts) for (const panel of loaded) await page.waitForSelector(panel);
     await play(page);
     assert.deepEqual(wrong, []);
   } finally {
