@@ -26,6 +26,7 @@ export function connectControls({ keys, hold, grip, acrobot }) {
   document.addEventListener("keydown", (event) => {
     const { key, target } = event;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (target.id === "plane" && key in PUSHES) return;
     const field = target.closest("input, select, textarea");
     if (field) {
       const ends = field.matches("textarea") ? ["Escape"] : ["Enter", "Escape"];

@@ -45,8 +45,9 @@ function showNumbers({ game, rival, playing, scores }) {
     "rival-steps": isUpright(rival.acrobot.state) ? "upright" : verdict(rival) || `${rival.steps}`,
   };
   for (const [id, text] of Object.entries(texts)) write(id, text);
-  $("balance").hidden = game.free;
-  $("challenge").hidden = !game.free || scores.pulls !== null;
+  const holds = game.free && ["planner", "regulator", "own"].includes($("policy").value);
+  $("balance").hidden = holds;
+  $("challenge").hidden = !holds || scores.pulls !== null;
   $("rival-score").hidden = $("rival").value === "";
   const [first, last] = game.span;
   Object.assign($("scrub"), { min: first, max: last, value: game.steps });

@@ -15,6 +15,7 @@ const [PERIOD, REGION_PERIOD] = [30, 100];
 /** How much of the path is shown, s. */
 const PATH = 4;
 const UPRIGHT = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
+const SIDES = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const NAMES = ["θ1", "θ2", "θ1′", "θ2′", "Torque"];
 
 const $ = (id) => document.getElementById(id);
@@ -133,6 +134,15 @@ export function regulatorPanel({ game, play, changed }) {
     const [x, y] = valuesAt(canvas, offsetX, offsetY);
     const [theta1, dtheta1] = [Math.PI + x * range[0], y * range[1]];
     play({ ...sliceOf(range), theta1, dtheta1 });
+  };
+
+  canvas.onkeydown = (event) => {
+    if (!(event.key in SIDES)) return;
+    event.preventDefault();
+    const range = rangeOf(game.acrobot.params);
+    const state = sliceOf(range);
+    const [x, y] = SIDES[event.key].map((side, i) => (2 * side * range[i]) / SIZE);
+    play({ ...state, theta1: state.theta1 + x, dtheta1: state.dtheta1 + y });
   };
 
   return {

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { eigenvalues, leanOf, torqueBy } from "../dist/law.js";
-import { onPage, says, shows, text } from "./player.mjs";
+import { linked, onPage, says, shows, text } from "./player.mjs";
 
 test("eigenvalues are those of a matrix", () => {
   for (const [matrix, expected] of [
@@ -50,6 +50,14 @@ onPage("the regulator plays, and gain, poles and region follow the weights", {},
   const { width, height } = await page.locator("#plane").boundingBox();
   await page.click("#plane", { position: { x: 0.9 * width, y: 0.1 * height } });
   await says(page, "#verdict-now", /^it falls$/);
+  // By keys, one cell to the right of upright: the state is out of sight.
+  await page.waitForFunction(() => document.querySelector("#return").textContent === "0.0 s");
+  await page.waitForTimeout(2000);
+  await page.focus("#plane");
+  await page.keyboard.press("ArrowRight");
+  const { start } = await linked(page);
+  assert.ok(Math.abs(start.theta1 - Math.PI - 0.0128) < 1e-4, `${start.theta1}`);
+  assert.deepEqual([start.theta2, start.dtheta1, start.dtheta2], [0, 0, 0]);
   await page.fill("#gravity", "0");
   await says(page, "#status", /^Gravity is 0/);
   assert.match(await text(page, "#regulator-reason"), /^Gravity is 0/);
