@@ -4,7 +4,7 @@
 import { actionsOf } from "./link.js";
 import { DEFAULTS, isSame } from "./settings.js";
 
-/** From one pull to the next, how long one takes, and how long it must stand before the first, s. */
+/** From one pull to the next, how long one takes, and how long it stands before the first, s. */
 const [PERIOD, DURATION, STANDING] = [3, 0.2, 1];
 /** How much farther each pull goes than the one before, as a part of both lengths. */
 const GROWTH = 0.005;
@@ -39,9 +39,11 @@ export class Scores {
   /** The scores of this run. */
   #own = {};
   pulls = null;
+  /** What growing pulls pull in the next step, or null. */
+  grip = null;
 
   begin() {
-    [this.pulls, this.#own] = [null, {}];
+    [this.pulls, this.grip, this.#own] = [null, null, {}];
   }
 
   /** Another machine has other scores. */
@@ -54,6 +56,10 @@ export class Scores {
     this.pulls = new Pulls();
   }
 
+  aim(game) {
+    this.grip = this.pulls?.grip(game) ?? null;
+  }
+
   /** Counts a step. Returns what to say once the acrobot has fallen, or null. */
   step(game) {
     const isWhole = actionsOf(game) !== null && isSame(game.params, DEFAULTS);
@@ -63,7 +69,7 @@ export class Scores {
     const isRecord = held > (this.best.held ?? 0);
     this.#own = { held: Number(held.toFixed(2)) };
     if (isRecord) this.best = { ...this.best, ...this.#own };
-    this.pulls = null;
+    this.pulls = this.grip = null;
     return `It held for ${held.toFixed(1)} s and fell at pull ${count}.` +
       (isRecord ? " That is the score to beat." : "");
   }

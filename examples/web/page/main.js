@@ -28,6 +28,8 @@ function start() {
   const held = { left: false, right: false };
   /** What pulls: a `point` of a link, and where to, in the picture or as seen from the point. */
   let grip = null;
+  /** What pulls now: the user, or growing pulls. */
+  const pulling = () => scores.grip ?? grip;
   const full = (act) => ({ acrobot }) => FULL * (act(acrobot) - 1);
   /** The motor's level by each policy, for a game. */
   const policies = {
@@ -35,7 +37,7 @@ function start() {
     bang_bang: full(bangBang),
     energy_law: full(energyLaw),
     random: full((acrobot) => acrobot.sample()),
-    planner: (game) => planners.get(game)?.act(game, grip !== null) ?? 0,
+    planner: (game) => planners.get(game)?.act(game, pulling() !== null) ?? 0,
   };
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const isTouch = matchMedia("(hover: none)").matches;
@@ -59,14 +61,14 @@ function start() {
 
   /** Where the grip pulls to, m. */
   const target = () => {
-    const { at, offset } = grip;
+    const { at, offset } = pulling();
     if (at) return placeAt(...at, game.params);
     return placesOf(game.acrobot.state, game.params)[1].map((x, i) => x + offset[i]);
   };
   const push = () => {
-    if (grip === null || control === null) return null;
+    if (pulling() === null || control === null) return null;
     const { state, params } = game.acrobot;
-    const change = control.pull(grip.point, target(), state, params);
+    const change = control.pull(pulling().point, target(), state, params);
     const units = change.map((x) => Math.round(UNITS * x) || 0);
     return units.some((unit) => unit !== 0) ? units : null;
   };
@@ -74,7 +76,7 @@ function start() {
   const levelBy = (policy, game) => noisy(policies[policy](game), game.params);
 
   const step = () => {
-    if (scores.pulls !== null) grip = scores.pulls.grip(game);
+    scores.aim(game);
     try {
       const index = game.steps;
       const policy = $("policy").value;
@@ -92,10 +94,7 @@ function start() {
     }
     shown = 0;
     const fallen = scores.step(game);
-    if (fallen !== null) {
-      grip = null;
-      say(fallen);
-    }
+    if (fallen !== null) say(fallen);
     if (game.end === null) return;
     const own = before > 0 ? `, ${game.steps - before} of them yours` : "";
     const end = game.end === "goal" ? "Goal" : "Out of time";
@@ -139,15 +138,15 @@ function start() {
 
   /** Changes the parameters at once, except where another episode must begin. */
   const setPhysics = (params) => {
-    scores.change();
     if (game.steps === 0 || game.end !== null || replayed()) begin(game.seed, params);
     else {
       for (const each of [game, rival]) each.change(params);
       if (isFree()) game.release();
       shown = params.dt;
-      address();
       changed();
     }
+    scores.change();
+    address();
     if (stuck) play();
   };
 
@@ -265,7 +264,7 @@ function start() {
       $("link-field").hidden = hidden;
     }
     const planner = $("policy").value === "planner" && planners.get(game);
-    const pulled = grip && { point: grip.point, target: target() };
+    const pulled = pulling() && { point: pulling().point, target: target() };
     const part = calm.matches ? 1 : Math.min(shown / dt, 1);
     const path = game.steps === game.span[1] && planner?.path;
     drawStage(game, part, path || [], pulled);

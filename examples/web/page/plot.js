@@ -83,8 +83,8 @@ export function valuesAt({ clientWidth, clientHeight }, x, y) {
 /**
  * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of
  * `marks` is a value and the color of its dashed horizontal line, `cursor` is the x of a vertical
- * one, if there is one, and `unit` is that of x. If there is a `period`, as of an angle, a line leaves the
- * plot at one edge and returns at the other.
+ * one, if there is one, and `unit` is that of x. If there is a `period`, as of an angle, a line
+ * leaves the plot at one edge and returns at the other.
  */
 export function plot(canvas, options) {
   const { series, range, start = 0, end, unit, marks = [], cursor, period = Infinity } = options;

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { linked, onPage, open, paused, says, shows, steps, text } from "./player.mjs";
+import { linked, onPage, open, paused, press, says, shows, steps, text } from "./player.mjs";
 
 onPage("the game has a score to beat, which a link carries", {}, async (page) => {
   await paused(page, 42);
@@ -52,6 +52,13 @@ onPage("the planner holds against pulls that grow", {}, async (page) => {
   await says(page, "#return", /^[2-9]\.\d s$/);
   await page.click("#challenge");
   await says(page, "#return-label", /^Held, pull 4$/);
+  // A restart ends them.
+  await page.click("#reset");
+  await page.click("#pause");
+  await press(page, [1, 1]);
+  assert.ok((await linked(page)).pushes.every((push) => push === null));
+  await page.click("#pause");
+  await page.click("#challenge");
   // What is to beat belongs to its machine.
   await says(page, "#status", /^It held for .* That is the score to beat\./);
   await page.fill("#mass1", "1.1");
