@@ -16,8 +16,8 @@ function show(game, id, title, names, unit, indices, options, more = "") {
   const [start, rows] = game.window;
   const columns = indices.map((index) => rows.map(({ numbers }) => numbers[index]));
   const series = columns.map((values, i) => ({ values, color: colors[i] }));
-  const end = Math.max(start + rows.length - 1, 50);
-  const cursor = game.steps !== game.span[1] && game.steps;
+  const end = Math.max(start + rows.length - 1, start + 1, 50);
+  const cursor = game.steps === game.span[1] ? undefined : game.steps;
   const given = options(columns.flat());
   plot($(id), { series, start, end, cursor, unit: "steps", ...given });
   const last = indices.map((index, i) => {

@@ -114,7 +114,7 @@ function start() {
     game.begin(seed, params, run?.start);
     game.free = isFree(params) || (run !== null && actionsOf(run) === null);
     rival.begin(seed, params, run?.start);
-    rival.free = $("rival").value === "planner";
+    rival.free = ["planner", "regulator"].includes($("rival").value);
     before = 0;
     scores.begin();
     shown = params.dt;

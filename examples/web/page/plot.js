@@ -83,7 +83,7 @@ export function valuesAt({ clientWidth, clientHeight }, x, y) {
 /**
  * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of
  * `marks` is a value and the color of its dashed horizontal line, `cursor` is the x of a vertical
- * one, if there is one, and `unit` is that of x. If there is a `period`, as of an angle, a line
+ * one, if given, and `unit` is that of x. If there is a `period`, as of an angle, a line
  * leaves the plot at one edge and returns at the other.
  */
 export function plot(canvas, options) {
@@ -92,7 +92,7 @@ export function plot(canvas, options) {
   const { context, x, y, line } = axes(canvas, [start, end], unit, range, labels);
   const across = [start, end].map(x);
   for (const [mark, color] of marks) line(across.map((at) => [at, y(mark)]), color, [4, 4]);
-  if (cursor) line(range.map((value) => [x(cursor), y(value)]), color("--text"));
+  if (cursor !== undefined) line(range.map((value) => [x(cursor), y(value)]), color("--text"));
   context.lineWidth = 1.5;
   for (const { values, color } of series) {
     const points = values.flatMap((value, i) => {
