@@ -5,6 +5,7 @@ const FRAME = 0.04;
 
 export function animationOf(game) {
   const { length1, length2, dt } = game.params;
+  const [, rows] = game.window;
   const every = Math.max(1, Math.round(FRAME / dt));
   const isFrame = (_, i) => i % every === 0;
   const animate = (element, name, values) => {
@@ -15,13 +16,14 @@ values="${values.join(";")}"`;
   const rotation = (index) => {
     let angle = 0;
     // In degrees, clockwise, and without jumps at half a turn.
-    const degrees = game.column(index).filter(isFrame).map((next) => {
+    const degrees = rows.filter(isFrame).map(({ numbers }) => {
+      const next = numbers[index];
       angle += Math.asin(Math.sin((next - angle) / 2)) * 2;
       return (-angle * 180 / Math.PI).toFixed(1);
     });
     return `${animate("animateTransform", "transform", degrees)} type="rotate"/>`;
   };
-  const pulls = [null, ...game.pushes].filter(isFrame).map((push) => Number(push !== null));
+  const pulls = rows.filter(isFrame).map(({ push }) => Number(push !== null));
   const [first, second] = [length1, length2].map((x) => (2 * x) / (length1 + length2));
   const link = (length) =>
     `<path d="M0 0v${length}" stroke="#0cc" stroke-width=".2"/><circle r=".1" fill="#cc0"/>`;

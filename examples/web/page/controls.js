@@ -26,9 +26,11 @@ export function connectControls({ keys, hold, grip, acrobot }) {
   document.addEventListener("keydown", (event) => {
     const { key, target } = event;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const field = target.closest("input, select");
+    if (target.id === "plane" && key in PUSHES) return;
+    const field = target.closest("input, select, textarea");
     if (field) {
-      const leaves = field.matches("select") ? key in SIDES : ["Enter", "Escape"].includes(key);
+      const ends = field.matches("textarea") ? ["Escape"] : ["Enter", "Escape"];
+      const leaves = field.matches("select") ? key in SIDES : ends.includes(key);
       if (leaves) field.blur();
       if (!(leaves && key in SIDES)) return;
     }

@@ -20,6 +20,8 @@ const GOAL = 0.75;
 
 /** The units of a push in a rad/s. */
 export const UNITS = 4096;
+/** How long states are kept, s, and how many at most. */
+const [MEMORY, MOST] = [60, 6000];
 /** In shorter steps, s, a display shows no state between two of them. */
 const FRAME = 0.025;
 
@@ -48,13 +50,17 @@ export class Game {
   /** The last inputs: the level of each step, and its change of both velocities, or null. */
   levels = [];
   pushes = [];
-  steps = 0;
   /** Whether the game goes on at the goal and at the limit of steps. */
   free = false;
-  /** The last states, each with its energy, the tip's height, and the torque that led to it. */
+  /**
+   * The last states: `numbers` are the state, its energy, the tip's height, and the torque that
+   * led to it. `upright` is how long it has been upright, s.
+   */
   #rows = [];
-  /** `"goal"` or `"limit"` once the episode has ended. */
-  end = null;
+  /** The step of the first row, and the row that is shown and from which the next step goes on. */
+  #first = 0;
+  #at = 0;
+  #end = null;
 
   constructor(seed, params) {
     this.begin(seed, params);
@@ -66,12 +72,14 @@ export class Game {
     this.#gymnasium.reset(seed);
     this.acrobot.reset(seed);
     this.acrobot.state = start ?? this.#gymnasium.state;
-    Object.assign(this, { seed, start, levels: [], pushes: [], steps: 0, end: null });
-    this.#rows = [this.#row(0)];
+    Object.assign(this, { seed, start, levels: [], pushes: [] });
+    [this.#rows, this.#first, this.#at, this.#end] = [[], 0, 0, null];
+    this.#rows.push(this.#row(0, null));
   }
 
   /** Changes the parameters for the next steps. The inputs then begin with the next step. */
   change(params) {
+    this.cut();
     this.#set(params);
     Object.assign(this, { start: this.acrobot.state, levels: [], pushes: [] });
   }
@@ -91,40 +99,92 @@ export class Game {
   /** Steps with a level of the motor, and a push in its units or null. */
   step(level, push = null) {
     if (this.end !== null) return;
+    this.cut();
     const torque = torqueOf(level, this.params.torque);
     const { reward } = apply(this.acrobot, torque, push);
     this.levels.push(level);
     this.pushes.push(push);
-    this.#rows.push(this.#row(torque));
-    this.steps++;
+    this.#rows.push(this.#row(torque, push));
+    this.#at++;
     this.#forget();
     if (this.free) return;
-    if (reward > GOAL) this.end = "goal";
-    else if (this.steps === LIMIT) this.end = "limit";
+    if (reward > GOAL) this.#end = "goal";
+    else if (this.steps === LIMIT) this.#end = "limit";
+  }
+
+  /** Shows the state after another of the last steps. The next step goes on from there. */
+  seek(step) {
+    this.#at = Math.max(0, Math.min(step - this.#first, this.#rows.length - 1));
+    const { numbers, params } = this.#rows[this.#at];
+    if (params !== this.params) this.#set(params);
+    this.acrobot.state = stateOf(numbers);
+  }
+
+  /** Forgets the steps after the one that is shown. */
+  cut() {
+    const cut = this.#rows.length - 1 - this.#at;
+    if (cut === 0) return;
+    this.#rows.length = this.#at + 1;
+    this.#end = null;
+    const left = this.levels.length - cut;
+    if (left < 0) this.start = this.acrobot.state;
+    // New arrays, because it is another run.
+    for (const name of ["levels", "pushes"]) this[name] = this[name].slice(0, Math.max(left, 0));
   }
 
   /** Goes on without an end. */
   release() {
-    Object.assign(this, { free: true, end: null });
+    [this.free, this.#end] = [true, null];
   }
 
   #forget() {
-    if (this.#rows.length > LIMIT + 1) this.#rows.shift();
+    const kept = Math.max(LIMIT, Math.min(Math.ceil(MEMORY / this.params.dt), MOST));
+    if (this.#rows.length > kept + 1) {
+      this.#rows.shift();
+      this.#first++;
+      this.#at--;
+    }
     if (this.levels.length <= LIMIT) return;
     this.levels.shift();
     this.pushes.shift();
-    const [theta1, theta2, dtheta1, dtheta2] = this.#rows[0];
-    this.start = { theta1, theta2, dtheta1, dtheta2 };
+    this.start = stateOf(this.#rows.at(-1 - LIMIT).numbers);
   }
 
-  #row(torque) {
+  #row(torque, push) {
     const { state, energy, tipHeight } = this.acrobot;
-    return Float32Array.of(...Object.values(state), energy, tipHeight, torque);
+    const numbers = Float32Array.of(...Object.values(state), energy, tipHeight, torque);
+    const before = this.#rows[this.#at]?.upright ?? 0;
+    const upright = isUpright(state) ? before + this.params.dt : 0;
+    return { numbers, push, upright, params: this.params };
   }
 
-  /** The step of the first of the last states. */
-  get first() {
-    return this.steps - this.#rows.length + 1;
+  get steps() {
+    return this.#first + this.#at;
+  }
+
+  /** The first and the last step that it remembers. */
+  get span() {
+    return [this.#first, this.#first + this.#rows.length - 1];
+  }
+
+  /** The rows to plot, with the step of the first one: the last ones, or those from `steps` on. */
+  get window() {
+    const from = Math.max(0, Math.min(this.#at, this.#rows.length - 1 - LIMIT));
+    return [this.#first + from, this.#rows.slice(from, from + LIMIT + 1)];
+  }
+
+  get rows() {
+    return this.#rows;
+  }
+
+  /** `"goal"` or `"limit"` once the episode has ended. */
+  get end() {
+    return this.#at === this.#rows.length - 1 ? this.#end : null;
+  }
+
+  /** How long it has been upright, s. */
+  get upright() {
+    return this.#rows[this.#at].upright;
   }
 
   /** −1 for each step except the one that reaches the goal. */
@@ -134,7 +194,7 @@ export class Game {
 
   /** The four numbers of the state, the energy, the height of the tip, and the last torque. */
   get numbers() {
-    return this.#rows.at(-1);
+    return this.#rows[this.#at].numbers;
   }
 
   /**
@@ -142,21 +202,18 @@ export class Game {
    * the physics takes steps.
    */
   between(part) {
-    const before = this.#rows.at(-2);
+    const before = this.#rows[this.#at - 1]?.numbers;
     const dt = Math.fround(part * this.params.dt);
     const isShort = this.params.dt < FRAME;
     if (part === 1 || dt === 0 || isShort || before === undefined) return this.acrobot;
-    const [theta1, theta2, dtheta1, dtheta2] = before;
     this.#shown.setParams({ ...this.acrobot.params, dt });
-    this.#shown.state = { theta1, theta2, dtheta1, dtheta2 };
-    apply(this.#shown, this.numbers[6], this.pushes.at(-1) ?? null);
+    this.#shown.state = stateOf(before);
+    apply(this.#shown, this.numbers[6], this.#rows[this.#at].push);
     return this.#shown;
   }
-
-  column(index) {
-    return Array.from(this.#rows, (row) => row[index]);
-  }
 }
+
+const stateOf = ([theta1, theta2, dtheta1, dtheta2]) => ({ theta1, theta2, dtheta1, dtheta2 });
 
 /** Steps an acrobot with a torque. A push changes the velocities before the step. */
 function apply(acrobot, torque, push) {

@@ -8,6 +8,10 @@ import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed, textOf } from "./s
 const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
 /** Who plays on after the inputs. */
 const POLICIES = ["planner", "bang_bang", "energy_law", "random"];
+/** The longest code of a controller. */
+const CODE = 4000;
+/** Scores to beat, with the least and the largest: the game's return, and seconds held. */
+const SCORES = { return: [-LIMIT, 0], held: [0, 1e6] };
 /** The largest push in its units. */
 const PUSH = 2 ** 20;
 
@@ -20,12 +24,14 @@ export function actionsOf({ start, levels, pushes }) {
 }
 
 export function encodeRun(run) {
-  const { seed, params, start, levels, pushes, policy } = run;
+  const { seed, params, start, levels, pushes, policy, controller, scores } = run;
   const fields = new URLSearchParams({ seed });
   for (const [name, value] of Object.entries(params)) {
     if (value !== DEFAULTS[name]) fields.set(name, textOf(value));
   }
   if (POLICIES.includes(policy)) fields.set("policy", policy);
+  if (controller !== undefined) fields.set("controller", controller);
+  for (const [name, score] of Object.entries(scores)) fields.set(name, textOf(score));
   const actions = actionsOf(run);
   const pushed = pushes.flatMap((push, step) => (push === null ? [] : [step, ...push]));
   const lists = {
@@ -46,7 +52,8 @@ export function decodeRun(hash) {
   const rejected = (rule, name) => {
     throw new Error(`${rule}, got ${JSON.stringify(name)}`);
   };
-  const names = ["seed", "dynamics", "policy", "actions", "state", "torques", "pushes"];
+  const names = ["seed", "dynamics", "policy", "controller", "actions", "state",
+    "torques", "pushes", ...Object.keys(SCORES)];
   const known = [...names, ...PARAMETERS.map(({ name }) => name)];
   const unknown = [...fields.keys()].find((name) => !known.includes(name));
   if (unknown !== undefined) rejected(`names in the link must be ${known.join(", ")}`, unknown);
@@ -58,6 +65,15 @@ export function decodeRun(hash) {
   const policy = fields.get("policy") ?? undefined;
   if (policy !== undefined && !POLICIES.includes(policy)) {
     rejected(`policy in the link must be ${POLICIES.join(", ")}`, policy);
+  }
+  const controller = fields.get("controller") ?? undefined;
+  if (controller?.length > CODE) rejected(`controller must have at most ${CODE} characters`, "");
+  const scores = {};
+  for (const [name, [least, most]] of Object.entries(SCORES)) {
+    if (!fields.has(name)) continue;
+    scores[name] = parseNumber(fields.get(name));
+    const isValid = scores[name] >= least && scores[name] <= most;
+    if (!isValid) rejected(`${name} must be from ${least} to ${most}`, fields.get(name));
   }
   const seed = parseSeed(fields.get("seed") ?? "42");
 
@@ -90,5 +106,5 @@ export function decodeRun(hash) {
   if (state.length % 4 !== 0) rejected("state must be 4 numbers", state);
   const entries = state.map((number, i) => [STATE[i], number]);
   const start = entries.length === 0 ? null : Object.fromEntries(entries);
-  return { seed, params, policy, start, levels, pushes };
+  return { seed, params, policy, controller, scores, start, levels, pushes };
 }

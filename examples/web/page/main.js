@@ -1,39 +1,43 @@
 // Connects the page to an episode and to the panels.
 
-import { Learner, bangBang, energyLaw } from "./acrobot-rs/policies.js";
-import { animationOf } from "./animation.js";
-import { CHARTS, number } from "./charts.js";
+import { bangBang, energyLaw } from "./acrobot-rs/policies.js";
+import { Scores } from "./challenge.js";
 import { connectControls } from "./controls.js";
-import { download } from "./files.js";
-import { FULL, Game, UNITS, isUpright, noisy } from "./game.js";
+import { FULL, Game, UNITS, noisy } from "./game.js";
 import { actionsOf, decodeRun, encodeRun } from "./link.js";
+import { numbersOf } from "./numbers.js";
+import { connectPanels } from "./panels.js";
 import { attempt, parametersPanel } from "./parameters.js";
 import { placesOf } from "./places.js";
 import { minus } from "./plot.js";
-import { BALANCE, DEFAULTS, LIMIT, isSame, parseSeed } from "./settings.js";
+import { BALANCE, DEFAULTS, LIMIT, isSame, machineOf } from "./settings.js";
 import { drawRival, drawStage, placeAt } from "./stage.js";
-import { trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
 
 /** How long a policy's ended episode stays on the screen before the next begins, ms. */
 const INTERVAL = 1500;
-/** The least time between two updates of the numbers and of one plot while it plays, ms. */
-const PERIOD = 30;
 
 function start() {
-  const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
+  const game = new Game(42n, { ...DEFAULTS });
   /** The acrobot to compare with. */
   const rival = new Game(42n, { ...DEFAULTS });
   /** The module of the planner and of pulls, once it has been loaded, and each game's planner. */
   let control = null;
   const planners = new Map();
-  let learnt = learner;
-  const POLICIES = {
-    bang_bang: bangBang,
-    energy_law: energyLaw,
-    learnt: (acrobot) => learnt.act(acrobot),
-    random: (acrobot) => acrobot.sample(),
+  const held = { left: false, right: false };
+  /** What pulls: a `point` of a link, and where to, in the picture or as seen from the point. */
+  let grip = null;
+  /** What pulls now: the user, or growing pulls. */
+  const pulling = () => scores.grip ?? grip;
+  const full = (act) => ({ acrobot }) => FULL * (act(acrobot) - 1);
+  /** The motor's level by each policy, for a game. */
+  const policies = {
+    keys: () => FULL * (Number(held.right) - Number(held.left)),
+    bang_bang: full(bangBang),
+    energy_law: full(energyLaw),
+    random: full((acrobot) => acrobot.sample()),
+    planner: (game) => planners.get(game)?.act(game, pulling() !== null) ?? 0,
   };
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const isTouch = matchMedia("(hover: none)").matches;
@@ -47,38 +51,32 @@ function start() {
   let nextAt = Infinity;
   /** The run of a link. */
   let recorded = null;
-  const held = { left: false, right: false };
-  /** What pulls: a `point` of a link, and where to, in the picture or as seen from the point. */
-  let grip = null;
-  /** The seconds since the acrobot is upright, and the steps before the user took over. */
-  let upright = 0;
+  const scores = new Scores();
+  /** The steps before the user took over. */
   let before = 0;
+  /** Whether it is paused because who plays cannot play with these parameters. */
+  let stuck = false;
 
   // ---- the episode
 
-  const level = (policy, game) => {
-    const decided = {
-      keys: () => FULL * (Number(held.right) - Number(held.left)),
-      planner: () => planners.get(game)?.act(game, grip !== null) ?? 0,
-    }[policy] ?? (() => FULL * (POLICIES[policy](game.acrobot) - 1));
-    return noisy(decided(), game.params);
-  };
-
   /** Where the grip pulls to, m. */
   const target = () => {
-    const { at, offset } = grip;
+    const { at, offset } = pulling();
     if (at) return placeAt(...at, game.params);
     return placesOf(game.acrobot.state, game.params)[1].map((x, i) => x + offset[i]);
   };
   const push = () => {
-    if (grip === null || control === null) return null;
+    if (pulling() === null || control === null) return null;
     const { state, params } = game.acrobot;
-    const change = control.pull(grip.point, target(), state, params);
+    const change = control.pull(pulling().point, target(), state, params);
     const units = change.map((x) => Math.round(UNITS * x) || 0);
     return units.some((unit) => unit !== 0) ? units : null;
   };
 
+  const levelBy = (policy, game) => noisy(policies[policy](game), game.params);
+
   const step = () => {
+    scores.aim(game);
     try {
       const index = game.steps;
       const policy = $("policy").value;
@@ -88,14 +86,15 @@ function start() {
         return pause("The replay has ended. Press Restart, or an arrow and Play.");
       }
       const pushed = replays ? recorded.pushes[index] : push();
-      game.step(replays ? recorded.levels[index] : level(policy, game), pushed);
+      game.step(replays ? recorded.levels[index] : levelBy(policy, game), pushed);
       const other = $("rival").value;
-      if (other !== "") rival.step(level(other, rival), pushed);
+      if (other !== "") rival.step(levelBy(other, rival), pushed);
     } catch (error) {
-      return pause(minus(error.message)); // With extreme physics an energy is infinite.
+      return stick(minus(error.message)); // With extreme physics an energy is infinite.
     }
-    upright = isUpright(game.acrobot.state) ? upright + game.params.dt : 0;
     shown = 0;
+    const fallen = scores.step(game);
+    if (fallen !== null) say(fallen);
     if (game.end === null) return;
     const own = before > 0 ? `, ${game.steps - before} of them yours` : "";
     const end = game.end === "goal" ? "Goal" : "Out of time";
@@ -105,13 +104,19 @@ function start() {
     say(`${result} ${continues ? "The next seed follows." : "Press Restart or Next seed."}`);
   };
 
+  /** Whether who plays goes on at the goal. An own controller plays Gymnasium's game, too. */
+  const isFree = (params = game.params) =>
+    ["planner", "regulator"].includes($("policy").value) ||
+    ($("policy").value === "own" && !isSame(params, DEFAULTS));
+
   /** Begins an episode, or a link's run from the state where it begins. */
   const begin = (seed, params = game.params, run = replayed()) => {
     game.begin(seed, params, run?.start);
-    game.free = $("policy").value === "planner" || (run !== null && actionsOf(run) === null);
+    game.free = isFree(params) || (run !== null && actionsOf(run) === null);
     rival.begin(seed, params, run?.start);
-    rival.free = $("rival").value === "planner";
-    upright = before = 0;
+    rival.free = ["planner", "regulator"].includes($("rival").value);
+    before = 0;
+    scores.begin();
     shown = params.dt;
     nextAt = Infinity;
     $("seed").value = seed;
@@ -125,17 +130,24 @@ function start() {
   const address = (run = replayed() ?? { start: null, levels: [], pushes: [] }) => {
     const { seed, params } = game;
     const policy = run === recorded ? recorded.policy : $("policy").value;
-    history.replaceState(null, "", encodeRun({ ...run, seed, params, policy }));
+    const controller = policy === "own" ? panels.code : undefined;
+    const more = { seed, params, policy, controller, scores: scores.all };
+    history.replaceState(null, "", encodeRun({ ...run, ...more }));
   };
   const replayed = () => ($("policy").value === "link" ? recorded : null);
 
   /** Changes the parameters at once, except where another episode must begin. */
   const setPhysics = (params) => {
-    if (game.steps === 0 || game.end !== null || replayed()) return begin(game.seed, params);
-    for (const each of [game, rival]) each.change(params);
-    shown = params.dt;
+    if (game.steps === 0 || game.end !== null || replayed()) begin(game.seed, params);
+    else {
+      for (const each of [game, rival]) each.change(params);
+      if (isFree()) game.release();
+      shown = params.dt;
+      changed();
+    }
+    scores.change();
     address();
-    changed();
+    if (stuck) play();
   };
 
   const reset = () => {
@@ -144,30 +156,49 @@ function start() {
   };
   const next = () => begin(game.seed + 1n);
 
+  /** Both games go on from what is shown. */
+  const goOn = () => [game, rival].forEach((each) => each.cut());
   const play = () => {
-    playing = true;
+    if (playing) return;
+    goOn();
+    [playing, stuck] = [true, false];
     if (game.end !== null) reset();
     say(player());
     changed();
   };
   const pause = (message) => {
-    playing = false;
+    playing = stuck = false;
     // The picture shows the last step, as the numbers do.
     shown = game.params.dt;
     nextAt = Infinity;
     say(message);
     changed();
   };
+  /** Pauses until the parameters change. */
+  const stick = (message) => {
+    pause(message);
+    stuck = true;
+  };
   const toggle = () => (playing ? pause("Paused.") : play());
+  /** Whether the button for one step waits for it. */
+  let waits = false;
   const single = () => {
     if (playing) pause("Paused.");
     if (game.end !== null) return say("The episode has ended. Press Restart or Next seed.");
+    goOn();
+    waits = !panels.isReady($("policy").value);
+    if (waits) return;
     step();
     shown = game.params.dt;
     changed();
   };
 
-  const say = (message) => ($("status").textContent = message);
+  /** What the page says, and what the planner adds. */
+  let [said, thought] = ["", ""];
+  const say = (message, more = thought) => {
+    [said, thought] = [message, more];
+    $("status").textContent = `${message} ${more}`.trim();
+  };
 
   /** Who applies the torque, as a sentence. */
   const player = () => {
@@ -185,13 +216,12 @@ function start() {
     const takesOver = policy === "keys" && $("policy").value !== "keys";
     before = takesOver ? game.steps : 0;
     $("policy").value = policy;
-    if (policy === "planner") {
+    if (isFree()) {
       game.release();
       nextAt = Infinity;
     } else if (policy === "link") begin(recorded.seed, recorded.params);
-    else if (policy !== "keys" && (game.end !== null || game.free)) {
-      begin(game.seed, isSame(game.params, BALANCE) ? { ...DEFAULTS } : game.params);
-    }
+    else if (policy !== "keys" && game.end !== null) begin(game.seed);
+    $("policy-hint").textContent = $("policy").selectedOptions[0].dataset.hint;
     showParams();
     address();
     if (playing) say(player());
@@ -201,40 +231,18 @@ function start() {
 
   // ---- what the page shows
 
-  let dirty = true;
-  /** Requests an update of everything except the picture, which each frame draws. */
-  const changed = () => (dirty = true);
+  const { changed, frame: showNumbers } = numbersOf(() => ({ game, rival, playing, scores }));
 
-  /** The same text again would need another layout. */
-  const write = (id, text) => $(id).textContent !== text && ($(id).textContent = text);
-
-  let [updated, turn] = [0, 0];
-  const update = (now) => {
-    [dirty, updated] = [false, now];
-    const charts = playing ? [CHARTS[turn++ % CHARTS.length]] : CHARTS;
-    charts.forEach((show) => show(game));
-    const verdict = ({ steps, end }) =>
-      ({ goal: `Goal! ${steps} steps`, limit: "Out of time" })[end];
-    const rivalVerdict = verdict(rival) ?? String(rival.steps);
-    const texts = {
-      "step": String(game.steps),
-      "return": game.free ? `${upright.toFixed(1)} s` : minus(String(game.return)),
-      "steps-label": game.free ? "Steps" : "Steps (at most 500)",
-      "return-label": game.free ? "Upright for" : "Return",
-      "pause": playing ? "Pause" : "Play",
-      "verdict": verdict(game) ?? "",
-      "rival-label": `Grey: ${$("rival").selectedOptions[0].textContent}`,
-      "rival-steps": isUpright(rival.acrobot.state) ? "upright" : rivalVerdict,
-    };
-    for (const [id, text] of Object.entries(texts)) write(id, text);
-    $("rival-score").hidden = $("rival").value === "";
-    const bits = new Uint32Array(game.numbers.buffer);
-    const rows = ["θ1", "θ2", "θ1′", "θ2′"].map((name, i) => {
-      const value = `${number(game.numbers[i], 4)} ${i < 2 ? "rad" : "rad/s"}`;
-      const code = `<code>${bits[i].toString(16).padStart(8, "0")}</code>`;
-      return `<tr><th scope="row">${name}</th><td>${value}</td><td>${code}</td></tr>`;
-    });
-    if (!playing || $("bits").open) $("state").innerHTML = rows.join("");
+  /** Takes the steps that are due. */
+  const advance = () => {
+    // With a tiny dt a frame shows fewer steps than it should.
+    for (let i = 0; playing && game.end === null && shown >= game.params.dt && i < LIMIT; i++) {
+      if (!panels.isReady($("policy").value)) return;
+      const over = i + 1 < LIMIT ? shown - game.params.dt : 0;
+      step();
+      shown = playing ? over : game.params.dt;
+      changed();
+    }
   };
 
   let last = performance.now();
@@ -244,34 +252,28 @@ function start() {
     const elapsed = Math.min(Math.max(now - last, 0), 100) / 1000;
     last = now;
     const { dt } = game.params;
+    const more = elapsed * Number($("pace").value);
     if (playing && game.end === null) {
-      shown += elapsed * Number($("pace").value);
-      // With a tiny dt a frame shows fewer steps than it should.
-      for (let i = 0; shown >= dt && playing && game.end === null && i < LIMIT; i++) {
-        const over = i + 1 < LIMIT ? shown - dt : 0;
-        step();
-        shown = playing ? over : dt;
-        changed();
-      }
-    } else {
-      shown = Math.min(shown + elapsed * Number($("pace").value), dt);
-    }
+      // Not more than a picture's worth, if the own controller has not answered.
+      shown = Math.min(shown, dt) + more;
+      advance();
+    } else shown = Math.min(shown + more, dt);
     if (now >= nextAt && playing) {
       const { hidden } = $("link-field");
       next();
       $("link-field").hidden = hidden;
     }
-    const planner = $("policy").value === "planner" ? planners.get(game) : undefined;
-    const pulled = grip && { point: grip.point, target: target() };
+    const planner = $("policy").value === "planner" && planners.get(game);
+    const pulled = pulling() && { point: pulling().point, target: target() };
     const part = calm.matches ? 1 : Math.min(shown / dt, 1);
-    drawStage(game, part, planner?.path ?? [], pulled);
+    const path = game.steps === game.span[1] && planner?.path;
+    drawStage(game, part, path || [], pulled);
     drawRival($("rival").value === "" ? null : rival, part);
-    // Plots take longer than all else, so each frame draws one at most. Texts come last, because
-    // the size of a canvas is only known after the layout.
-    if (dirty && (!playing || now - updated >= PERIOD)) update(now);
-    const thinks = planner?.thinks ?? false;
-    write("thought", thinks ? "Planning…" : planner?.message ?? "");
-    $("thought").classList.toggle("thinks", thinks);
+    // Last, because the size of a canvas is only known after the layout.
+    showNumbers(now);
+    panels.frame(now);
+    const thinks = planner?.thinks ? "Planning…" : planner?.message ?? "";
+    if (thinks !== thought) say(said, thinks);
   };
 
   // ---- keys and buttons
@@ -286,6 +288,7 @@ function start() {
     hold,
     grip(pulled) {
       grip = pulled;
+      scores.begin();
       // A replay has its own pushes.
       if (grip !== null && $("policy").value === "link") choose("keys");
     },
@@ -293,27 +296,21 @@ function start() {
   });
   const buttons = { pause: toggle, single, reset, next };
   for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
-  const select = (policy) => {
-    // With Gymnasium's 1 N m a swing-up takes at least 10 s, and a touch is enough for a fall.
-    const isWeak = policy === "planner" && isSame(game.params, DEFAULTS);
-    choose(policy);
-    if (!isWeak) return;
+  /** With Gymnasium's 1 N m a swing-up takes at least 10 s, and a touch is enough for a fall. */
+  const strengthen = () => {
+    if (!isSame(game.params, DEFAULTS)) return;
     setPhysics({ ...BALANCE });
     showParams();
-    if (playing) say(player());
+    say(`The machine is now ${machineOf(game.params)}. ${playing ? player() : ""}`);
+  };
+  const select = (policy) => {
+    choose(policy);
+    if (policy === "planner") strengthen();
   };
   $("policy").onchange = ({ target }) => select(target.value);
-  for (const option of $("policy").options) {
-    if (!["keys", "link"].includes(option.value)) $("rival").append(option.cloneNode(true));
-  }
-  $("rival").onchange = ({ target: { value } }) => {
-    begin(game.seed);
-    const name = $("rival").selectedOptions[0].textContent;
-    if (value !== "") say(`${name} plays behind it, from the same seed, with the same pulls.`);
-  };
   $("balance").onclick = () => {
     select("planner");
-    if (!playing) play();
+    play();
   };
   // After a click. Who uses the keyboard may go on with ↑ and ↓.
   const leaves = ({ target }) => target.matches("select:not(:focus-visible)") && target.blur();
@@ -321,33 +318,51 @@ function start() {
 
   // ---- settings
 
-  $("seed").value = game.seed;
-  $("seed").oninput = ({ target }) => {
-    const { value } = target;
-    attempt(target, $("seed-reason"), () => begin(parseSeed(value)));
-    target.value = value;
-  };
-
   const showParams = parametersPanel(
     () => game.params,
     (params) => {
       setPhysics(params);
-      say(playing ? `The physics has changed. ${player()}` : "The physics has changed.");
+      say(`The machine has changed. ${playing ? player() : ""}`.trim());
     },
   );
 
   // ---- links, files, and the panels
 
+  const panels = connectPanels({
+    game, rival, policies, scores, changed, begin, choose, play, stick, say, address,
+    strengthen,
+    /** Shows the state after one of the last steps. */
+    seek(step) {
+      if (playing) pause("Paused. Play goes on from what is shown.");
+      for (const each of [game, rival]) each.seek(step);
+      scores.begin();
+      showParams();
+      shown = game.params.dt;
+      changed();
+    },
+    answered: () => (waits ? single() : advance()),
+    beginAt(start) {
+      begin(game.seed, game.params, { start, levels: [], pushes: [] });
+      game.release();
+      if (!playing) say("Press Play.");
+    },
+  });
+
   const open = (hash) => {
     if (hash.length <= 1) return;
     try {
       const run = decodeRun(hash);
+      scores.best = { ...run.scores };
       begin(run.seed, run.params, run);
       recorded = run;
       const { length } = run.levels;
       document.querySelector("[value=link]").disabled = length === 0;
-      choose(length > 0 ? "link" : run.policy ?? "bang_bang");
+      const { controller } = run;
+      choose(length > 0 ? "link" : run.policy ?? (controller ? "keys" : "bang_bang"));
       if (length > 0) say(`Replay of a link: ${length} steps of seed ${run.seed}.`);
+      if (controller === undefined) return;
+      if (length === 0) pause("");
+      panels.show(controller);
     } catch (error) {
       address();
       say(`The link is invalid: ${minus(error.message)}`);
@@ -355,49 +370,6 @@ function start() {
     }
   };
   addEventListener("hashchange", () => open(location.hash));
-  $("share").onclick = async () => {
-    address(game);
-    const { href } = location;
-    $("link").value = href;
-    $("link-field").hidden = false;
-    $("link").select();
-    const inputs = actionsOf(game) === null ? "torques" : "actions";
-    const content = `seed, physics and ${game.levels.length} ${inputs}`;
-    const shown = (text) => ($("link-field").firstElementChild.textContent = text);
-    try {
-      await navigator.clipboard.writeText(href);
-      shown(`Copied: a link with ${content}`);
-    } catch {
-      shown(`The browser does not allow copying. Copy this link with ${content}`);
-    }
-  };
-
-  $("animate").onclick = () =>
-    download("acrobot.svg", [animationOf(game)], { type: "image/svg+xml" });
-
-  const training = trainingPanel(learner, {
-    ready(policy) {
-      learnt = policy;
-      for (const option of document.querySelectorAll("[value=learnt]")) {
-        option.disabled = false;
-        option.textContent = "Learnt";
-      }
-    },
-    game,
-    drive() {
-      choose("learnt");
-      begin(game.seed);
-      if (!playing) play();
-    },
-  });
-
-  for (const query of ["(prefers-color-scheme: dark)", "(prefers-reduced-motion: reduce)"]) {
-    matchMedia(query).addEventListener("change", () => {
-      training.draw();
-      changed();
-    });
-  }
-  new ResizeObserver(changed).observe($("energy"));
 
   const { hash } = location;
   showParams();

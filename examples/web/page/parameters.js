@@ -2,7 +2,7 @@
 // field shows why a value is rejected.
 
 import { minus } from "./plot.js";
-import { FIRST, MACHINES, PARAMETERS, isSame, parseNumber, textOf } from "./settings.js";
+import { FIRST, MACHINES, PARAMETERS, machineOf, parseNumber, textOf } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -18,8 +18,13 @@ export function attempt(field, reason, set) {
   }
 }
 
-/** `get` returns the parameters, `set` takes them or throws. Returns a function that shows them. */
-export function parametersPanel(get, set) {
+/** `get` returns parameters, `take` takes them or throws. Returns a function that shows them. */
+export function parametersPanel(get, take) {
+  const showMachine = () => ($("machine").value = machineOf(get()));
+  const set = (params) => {
+    take(params);
+    showMachine();
+  };
   const fields = PARAMETERS.map(({ name, label, unit, start, end, step, hint }, i) => {
     const field = document.createElement("div");
     field.className = "field parameter";
@@ -56,8 +61,7 @@ export function parametersPanel(get, set) {
     };
   });
   const show = () => {
-    const machine = Object.keys(MACHINES).find((name) => isSame(get(), MACHINES[name]));
-    $("machine").value = machine ?? "";
+    showMachine();
     $("dynamics").value = get().dynamics;
     fields.forEach((show) => show());
   };

@@ -7,6 +7,7 @@ import { Estimator, deviationFrom, planTorque } from "./acrobot-rs/control.js";
 import { energyLaw } from "./acrobot-rs/policies.js";
 import { isUpright, levelOf, newAcrobot, normal, torqueOf } from "./game.js";
 import { placesOf } from "./places.js";
+import { reasonOf } from "./settings.js";
 
 export { pull } from "./push.js";
 
@@ -85,7 +86,7 @@ export class PlannerPolicy {
 
   #check() {
     if (this.#error === null) return;
-    const message = this.#error;
+    const message = (this.#params && reasonOf(this.#params)) ?? this.#error;
     Object.assign(this, { thinks: false, message: "" });
     this.#error = this.#params = null;
     throw new Error(message);
@@ -101,7 +102,7 @@ export class PlannerPolicy {
 
   /** Keeps the plan if it still ends upright. Otherwise asks for another one. */
   #replan(state, isPulled) {
-    const done = this.#ahead[0]?.step ?? 0;
+    const done = this.#ahead[0]?.step ?? this.#step;
     this.thinks = false;
     this.#id++;
     this.#from(state, done);

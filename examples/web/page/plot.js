@@ -22,12 +22,11 @@ const scheme = globalThis.matchMedia?.("(prefers-color-scheme: dark)");
 scheme?.addEventListener("change", () => colors.clear());
 
 /**
- * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of
- * `marks` is a value and the color of its dashed horizontal line, and `unit` is that of x. If there
- * is a `period`, as of an angle, a line leaves the plot at one edge and returns at the other.
+ * Clears a canvas, and draws axes from `start` to `end`, with a `unit` at the last label, and over
+ * a range, with `labels` or else numbers. Returns its context, which draws only between them until
+ * it is restored, what places values, and `line`, which draws one through places.
  */
-export function plot(canvas, options) {
-  const { series, range, start = 0, end, unit, marks = [], period = Infinity } = options;
+export function axes(canvas, [start, end], unit, [low, high], labels) {
   const { clientWidth: width, clientHeight: height } = canvas;
   const scale = devicePixelRatio;
   const size = [width, height].map((side) => Math.round(side * scale));
@@ -37,11 +36,10 @@ export function plot(canvas, options) {
   context.setTransform(scale, 0, 0, scale, 0, 0);
   context.clearRect(0, 0, width, height);
 
-  const [low, high] = range;
   const { left, top } = MARGIN;
   const right = width - MARGIN.right;
   const inner = height - top - MARGIN.bottom;
-  const x = (value) => left + ((value - start) / Math.max(end - start, 1)) * (right - left);
+  const x = (value) => left + ((value - start) / (end - start)) * (right - left);
   const y = (value) => top + ((high - value) / (high - low)) * inner;
   const line = (points, style, dashes = []) => {
     context.strokeStyle = style;
@@ -50,16 +48,15 @@ export function plot(canvas, options) {
     points.forEach(([x, y, apart]) => (apart ? context.moveTo(x, y) : context.lineTo(x, y)));
     context.stroke();
   };
-  const across = (value, ...style) => line([[left, y(value)], [right, y(value)]], ...style);
 
   context.font = `11px ${getComputedStyle(canvas).fontFamily}`;
   context.fillStyle = color("--muted");
   context.textBaseline = "middle";
   context.textAlign = "right";
-  const labelled = ticks(low, high, 4).map((tick) => [tick, label(tick)]);
-  for (const [tick, text] of period === Infinity ? labelled : RIGHT_ANGLES) {
+  const numbers = ticks(low, high, 4).map((tick) => [tick, label(tick)]);
+  for (const [tick, text] of labels ?? numbers) {
     context.fillText(text, left - 6, y(tick));
-    across(tick, color("--grid"));
+    line([[left, y(tick)], [right, y(tick)]], color("--grid"));
   }
   context.textBaseline = "alphabetic";
   context.textAlign = "center";
@@ -69,13 +66,34 @@ export function plot(canvas, options) {
     const last = width - context.measureText(text).width / 2;
     context.fillText(text, Math.min(x(tick), last), height - 4);
   });
-  for (const [mark, color] of marks) across(mark, color, [4, 4]);
-
   context.beginPath();
   context.rect(left, top - 1, width - left, inner + 2);
   context.clip();
-  context.lineWidth = 1.5;
   context.lineJoin = "round";
+  return { context, x, y, line };
+}
+
+/** The parts of both axes, from −1 to 1, at a place in a canvas. */
+export function valuesAt({ clientWidth, clientHeight }, x, y) {
+  const { left, right, top, bottom } = MARGIN;
+  const across = (x - left) / (clientWidth - left - right);
+  return [2 * across - 1, 1 - (2 * (y - top)) / (clientHeight - top - bottom)];
+}
+
+/**
+ * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of
+ * `marks` is a value and the color of its dashed horizontal line, `cursor` is the x of a vertical
+ * one, if given, and `unit` is that of x. If there is a `period`, as of an angle, a line
+ * leaves the plot at one edge and returns at the other.
+ */
+export function plot(canvas, options) {
+  const { series, range, start = 0, end, unit, marks = [], cursor, period = Infinity } = options;
+  const labels = period === Infinity ? undefined : RIGHT_ANGLES;
+  const { context, x, y, line } = axes(canvas, [start, end], unit, range, labels);
+  const across = [start, end].map(x);
+  for (const [mark, color] of marks) line(across.map((at) => [at, y(mark)]), color, [4, 4]);
+  if (cursor !== undefined) line(range.map((value) => [x(cursor), y(value)]), color("--text"));
+  context.lineWidth = 1.5;
   for (const { values, color } of series) {
     const points = values.flatMap((value, i) => {
       const point = [x(start + i), y(value)];

@@ -69,3 +69,17 @@ export const textOf = (number) => (Object.is(number, -0) ? "-0" : String(number)
 export function parseNumber(text) {
   return text.trim() === "" ? NaN : Number(text);
 }
+
+/** The name of the machine with these parameters, or "". */
+export const machineOf = (params) =>
+  Object.keys(MACHINES).find((name) => isSame(params, MACHINES[name])) ?? "";
+
+const REASONS = {
+  torque: "The motor's largest torque is 0 N m, so it moves nothing. Set another one.",
+  gravity: "Gravity is 0 m/s². Then the motor cannot stop the whole acrobot once it turns. " +
+    "Set another gravity.",
+};
+
+/** Why nothing holds the acrobot with a parameter of 0, if one is. */
+export const reasonOf = (params) =>
+  REASONS[Object.keys(REASONS).find((name) => params[name] === 0)];

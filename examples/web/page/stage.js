@@ -1,6 +1,6 @@
 // Draws the acrobot in the page's colours, the path of the tip to come, and the spring.
 
-import { FULL, newAcrobot } from "./game.js";
+import { newAcrobot } from "./game.js";
 import { placeOf, placesOf } from "./places.js";
 import { color } from "./plot.js";
 
@@ -55,8 +55,8 @@ export function drawStage(game, part, path, pulled) {
   const names = ["--text", "--link", "--joint", "--torque", "--accent", "--second"];
   const [target, link, joint, torque, accent, second] = names.map(color);
   // The arrow fades with the torque.
-  const share = Math.round((255 * Math.abs(game.levels.at(-1) ?? 0)) / FULL);
-  const faded = `${torque}${share.toString(16).padStart(2, "0")}`;
+  const share = Math.min(Math.abs(game.numbers[6]) / game.params.torque || 0, 1);
+  const faded = `${torque}${Math.round(255 * share).toString(16).padStart(2, "0")}`;
   const context = contextOf(picture);
   const { width: side } = picture;
   const colors = { background: "transparent", target, link, joint, torque: faded };

@@ -61,7 +61,7 @@ test("the planner holds, is pulled down, and recovers; the link has the same bit
       click("#share");
     });
     const [hash, state] = [await page.evaluate(() => location.hash), await text(page, "#state")];
-    assert.match(hash, /policy=planner.*pushes=/);
+    assert.match(hash, /policy=planner.*torques=/);
     await page.goto("about:blank");
     await page.goto(origin + hash);
     await loads(page);
@@ -73,6 +73,34 @@ test("the planner holds, is pulled down, and recovers; the link has the same bit
     }
     assert.equal(Number(await text(page, "#step")), levels.length);
     assert.equal(await text(page, "#state"), state);
+  } finally {
+    await close();
+  }
+});
+
+test("the user's own controller plays, and stops with a line", async () => {
+  const dist = fileURLToPath(new URL("../dist", import.meta.url));
+  const { browser, origin, close } = await launch(dist);
+  try {
+    const page = await browser.newPage();
+    await page.goto(origin);
+    await loads(page);
+    await page.evaluate(help);
+    await page.evaluate(() => (document.querySelector("#own").open = true));
+    await page.waitForFunction(() => document.querySelector("#code").value !== "");
+    await page.evaluate(() => (select("#example", "LQR"), click("#run-upright")));
+    await page.waitForFunction(holds);
+    for (const [line, reason] of [["while (true) {}", "loop did not end"], ["x.y()", "x"]]) {
+      await page.evaluate((line) => {
+        document.querySelector("#code").value = `function torque() {\n  ${line}\n}`;
+        click("#run");
+      }, line);
+      await page.waitForFunction((start) => {
+        const { textContent } = document.querySelector("#code-reason");
+        return textContent.startsWith(start);
+      }, `Line 2, “${line}”: `);
+      assert.match(await text(page, "#code-reason"), new RegExp(reason));
+    }
   } finally {
     await close();
   }

@@ -33,7 +33,7 @@ test("the curve's baseline is the mean return of the untrained policy", () => {
   }
   assert.ok(Math.abs(sum / episodes - BASELINE) < 2, `${sum / episodes}`);
   const html = readFileSync(new URL("../dist/index.html", import.meta.url), "utf8");
-  assert.ok(html.includes(`Bang-bang: −${-BASELINE}<`));
+  assert.ok(html.includes(`>−${-BASELINE}<`));
 });
 
 test("the picture between two steps moves from one to the other", () => {
@@ -63,6 +63,9 @@ test("an invalid link is rejected with the reason", () => {
     ["#torques=1&pushes=1_2_3", /^pushes must be of steps, got \[1,2,3\]$/],
     ["#state=1_2_3", /^state must be 4 numbers, got \[1,2,3\]$/],
     ["#policy=learnt", /^policy in the link must be planner, .*, got "learnt"$/],
+    [`#controller=${"a".repeat(4001)}`, /^controller must have at most 4000 characters, got ""$/],
+    ["#return=1", /^return must be from -500 to 0, got "1"$/],
+    ["#held=x", /^held must be from 0 to 1000000, got "x"$/],
     ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
   ]) {
     assert.throws(() => decodeRun(bad), { message });
@@ -89,13 +92,42 @@ test("the link of a game without an end replays the bits of its last steps", () 
   game.step(FULL, [UNITS, -UNITS / 2]);
   assert.deepEqual(game.acrobot.state, other.state);
 
-  const { seed, params, start, levels, pushes } = decodeRun(encodeRun(game));
+  const { seed, params, start, levels, pushes } = decodeRun(encodeRun({ ...game, scores: {} }));
   assert.deepEqual([levels.length, game.steps, game.end], [500, 701, null]);
   const replay = new Game(seed, params);
   replay.begin(seed, params, start);
   replay.free = true;
   levels.forEach((level, step) => replay.step(level, pushes[step]));
   assert.deepEqual(replay.numbers, game.numbers);
+});
+
+test("a game goes back, and on from there with the same bits", () => {
+  const game = longRun(randoms());
+  assert.deepEqual(game.span, [0, 700]);
+  game.change({ ...game.params, mass1: 2 });
+  for (let step = 0; step < 9; step++) game.step(FULL);
+  for (const [step, mass, kept] of [[705, 2, 5], [700, 1, 0], [690, 1, 0], [709, 2, 9]]) {
+    game.seek(step);
+    assert.deepEqual([game.steps, game.params.mass1, game.span[1]], [step, mass, 709]);
+    assert.deepEqual(game.numbers, game.rows[step].numbers);
+    assert.deepEqual(Object.values(game.acrobot.state), [...game.numbers.slice(0, 4)]);
+    const other = longRun(randoms());
+    other.change({ ...game.params, mass1: 2 });
+    for (let step = 0; step < 9; step++) other.step(FULL);
+    other.seek(step);
+    other.cut();
+    assert.deepEqual([other.span[1], other.levels.length], [step, kept]);
+    const { seed, params, start, levels, pushes } = decodeRun(encodeRun({ ...other, scores: {} }));
+    const replay = new Game(seed, params);
+    replay.begin(seed, params, start);
+    replay.free = true;
+    levels.forEach((level, i) => replay.step(level, pushes[i]));
+    assert.deepEqual(replay.numbers.slice(0, 4), game.numbers.slice(0, 4));
+  }
+  const long = new Game(1n, { ...DEFAULTS, dt: 0.02 });
+  long.release();
+  for (let step = 0; step < 4000; step++) long.step(0);
+  assert.deepEqual([...long.span, long.window[0]], [1000, 4000, 3500]);
 });
 
 test("a pull does the work that the energy gains", () => {
@@ -133,9 +165,12 @@ test("any link is replayed or is rejected with the reason", () => {
   // A zero with a sign.
   const params = { ...DEFAULTS, mass1: 1.5, dt: 0.05, gravity: -0, dynamics: "nips" };
   const levels = ACTIONS.map((action) => FULL * (action - 1));
-  const run = { seed: 42n, params, policy: undefined, start: null, levels };
+  const player = { policy: undefined, controller: undefined, scores: {} };
+  const run = { seed: 42n, params, ...player, start: null, levels };
   const short = { ...run, pushes: levels.map(() => null) };
-  const pushed = { ...short, policy: "planner", pushes: levels.map(() => [UNITS, -1]) };
+  const scores = { return: -70, held: 2.5 };
+  const pushes = levels.map(() => [UNITS, -1]);
+  const pushed = { ...short, policy: "planner", scores, controller: "a\n&b", pushes };
   const start = { theta1: 1, theta2: -0.5, dtheta1: 1e-9, dtheta2: -0 };
   const links = [short, { ...pushed, start }, pushed].map((run) => {
     assert.deepEqual(decodeRun(encodeRun(run)), run);

@@ -88,7 +88,7 @@ onPage("keys and parameters give native bits, and invalid ones are rejected", {}
   assert.equal(await page.inputValue("#mass1"), "1.05");
   // At once, without a restart.
   await shows(page, "#step", String(ACTIONS.length));
-  await shows(page, "#status", "The physics has changed.");
+  await shows(page, "#status", "The machine has changed.");
 
   await page.selectOption("#machine", "Gymnasium");
   assert.equal(await page.inputValue("#mass1"), "1");

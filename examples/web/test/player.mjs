@@ -43,7 +43,10 @@ export async function open({ hash = "", prepare, starts = true, ...options }, pl
   if (prepare) await page.addInitScript(prepare);
   await page.goto(origin + hash);
   try {
-    if (starts) await page.waitForSelector("#balance:enabled");
+    await page.$$eval("details", (all) => all.forEach((each) => (each.open = true)));
+    const loaded = ["#balance:enabled", "#policy:has([value=regulator]:enabled)", "#code:valid",
+      "#curve[width]"];
+    if (starts) for (const panel of loaded) await page.waitForSelector(panel);
     await play(page);
     assert.deepEqual(wrong, []);
   } finally {

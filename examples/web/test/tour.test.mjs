@@ -2,7 +2,9 @@
 
 import assert from "node:assert/strict";
 
-import { downloaded, linked, onPage, paused, press, says, shows, steps, text } from "./player.mjs";
+import {
+  downloaded, linked, onPage, paused, press, says, shownBits, shows, showsBits, steps, text,
+} from "./player.mjs";
 
 const holds = (page) => says(page, "#return", /^[1-9]\d*\.\d s$/);
 
@@ -22,8 +24,8 @@ onPage("the planner holds the acrobot, also after pulls", {}, async (page) => {
   assert.deepEqual(["index", "control"].map((name) => first.join().includes(`/${name}.js`)),
     [true, false]);
   await page.click("#balance");
-  await says(page, "#thought", /^Plan of \d/);
-  assert.match(page.workers()[0].url(), /planning\.js$/);
+  await says(page, "#status", /Plan of \d/);
+  assert.ok(page.workers().some((worker) => worker.url().endsWith("/planning.js")));
   await page.selectOption("#pace", "4");
   await holds(page);
   await page.selectOption("#pace", "1");
@@ -80,6 +82,38 @@ onPage("another acrobot is pulled, too, and an animation is saved", {}, async (p
   const verdict = await text(page, "#verdict");
   assert.match(verdict, /^Goal! \d+ steps$/);
   await shows(page, "#rival-steps", verdict);
+});
+
+onPage("one goes back, and on from there, and saves the run", {}, async (page) => {
+  await paused(page, 42);
+  await press(page, [2, 2, 0, 0, 1, 1]);
+  const last = await shownBits(page);
+  await page.focus("#scrub");
+  for (let i = 0; i < 4; i++) await page.keyboard.press("ArrowLeft");
+  await shows(page, "#step", "2");
+  await shows(page, "#ago", "0.8 s ago");
+  assert.match(await text(page, "#torques-caption"), /1\.00 N m/);
+  assert.notDeepEqual(await shownBits(page), last);
+  await press(page, [0, 0, 1, 1]);
+  await shows(page, "#ago", "now");
+  await showsBits(page, last);
+  const lines = String(await downloaded(page, "#csv")).trim().split("\n");
+  assert.equal(lines.length, 8);
+  assert.match(lines[0], /^time_s,theta1_rad,/);
+  assert.match(lines[7], /^1\.200000,.*,0$/);
+  assert.equal((await linked(page)).levels.map(Math.sign).join(), "1,1,-1,-1,0,0");
+});
+
+onPage("who plays changes without a jump", {}, async (page) => {
+  await page.click("#balance");
+  await page.waitForFunction(() => document.querySelector("#step").textContent > 60);
+  await page.click("#pause");
+  const state = await shownBits(page);
+  for (const policy of ["keys", "bang_bang", "planner", "energy_law"]) {
+    await page.selectOption("#policy", policy);
+    await showsBits(page, state);
+    assert.equal(await page.inputValue("#machine"), "Gymnasium, 5 N m");
+  }
 });
 
 onPage("keys push the tip, in every policy", {}, async (page) => {
