@@ -4,8 +4,9 @@
 //! A batch plays a random policy. Its yardstick is a loop over eight lanes of AVX2 that neither
 //! draws actions nor resets, with FMA (`batch_…`) and without (`batch_…_nofma`). The yardstick of
 //! `scalar_fast` and `scalar_micro` has the same equations for one acrobot in f32, that of the
-//! other `scalar_…` Gymnasium's order of operations in f64 and the platform's sines. Each figure is
-//! the best of several runs, interleaved with runs of the yardstick.
+//! other `scalar_…` Gymnasium's order of operations in f64 and the platform's sines. That of
+//! `linearize_…`, the derivatives of steps, is `Pendulum::linearize_step`. Each figure is the best
+//! of several runs, interleaved with runs of the yardstick.
 //!
 //! ```text
 //! cargo bench -p benches --bench throughput
@@ -14,11 +15,12 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::batch::{SimdLevel, VecBatch};
 use acrobot::numpy::Pcg64;
+use acrobot::physics::Pendulum;
 use acrobot::task::{Swingup, Task};
-use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use benches::{Lanes, Play, bare_f32, bare_f64, measured};
 
 fn main() {
@@ -43,6 +45,15 @@ fn main() {
         plain.batch.set_simd_level(level);
         versus(&format!("batch_fast_1024_measured {level:?}"), measured, plain);
     }
+    for level in [SimdLevel::widest(), SimdLevel::Avx2, SimdLevel::Baseline] {
+        linearize::<Fast>(&format!("linearize_fast_1024_own_params {level:?}"), level, false);
+        linearize::<Fast>(&format!("linearize_fast_1024_by_params {level:?}"), level, true);
+        linearize::<Portable>(
+            &format!("linearize_portable_1024_own_params {level:?}"),
+            level,
+            false,
+        );
+    }
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
     batch::<Portable>("portable", 1024, SimdLevel::widest());
@@ -66,6 +77,35 @@ fn compare(name: &str, mut ours: impl FnMut() -> usize, mut yardstick: impl FnMu
         (f64::max(best, rate(&mut ours)), f64::max(bare, rate(&mut yardstick)))
     });
     println!("{name} {best:.0} {:.2}", best / bare);
+}
+
+/// Derivatives of the steps of acrobots with own parameters, and of one pendulum again and again.
+fn linearize<A: Arithmetic>(name: &str, level: SimdLevel, with_params: bool) {
+    const COUNT: usize = 1024;
+    let mut batch = VecBatch::<A>::new(0, COUNT).expect("memory for the batch");
+    batch.own_params().expect("memory for the batch");
+    batch.set_simd_level(level);
+    let one = Pendulum::<A>::new(Params::<f64>::DEFAULT.cast(), State::UPRIGHT);
+    let one = one.expect("valid parameters");
+    let torque = A::Scalar::from_f64(0.5);
+    let mut models = vec![one.linearize_step(torque).expect("finite derivatives"); COUNT];
+    let mut by_params = vec![one.params().map(|_| [torque; 4]); COUNT];
+    let ours = || {
+        for _ in 0..50 {
+            let by_params = with_params.then_some(&mut by_params[..]);
+            let result =
+                batch.linearize_step_into(&[black_box(torque); COUNT], &mut models, by_params);
+            result.expect("finite derivatives");
+        }
+        50 * COUNT
+    };
+    let alone = || {
+        for _ in 0..COUNT {
+            black_box(one.linearize_step(black_box(torque)).expect("finite derivatives"));
+        }
+        COUNT
+    };
+    compare(name, ours, alone);
 }
 
 fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
