@@ -36,6 +36,7 @@ pages! {
     wasm "wasm.md",
     python "python.md",
     python_control "python-control.md",
+    python_firmware "python-firmware.md",
     python_many "python-many.md",
     python_parameters "python-parameters.md",
     languages "languages.md",

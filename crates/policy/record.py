@@ -14,7 +14,6 @@ import torch
 from acrobot_rs import policy
 
 HERE = Path(__file__).parent
-ACTIVATIONS = {"none": torch.nn.Identity(), "tanh": torch.tanh, "relu": torch.relu}
 
 
 def observations(count):
@@ -27,10 +26,9 @@ def observations(count):
         seen, *_ = envs.step(np.array([actions.sample()]))
 
 
-scores = torch.tensor(np.array(list(observations(10_000))))
-for weights, biases, activation in policy.load(HERE / "policy.bin").layers:
-    weights, biases = torch.tensor(weights), torch.tensor(biases)
-    scores = ACTIVATIONS[activation](torch.nn.functional.linear(scores, weights, biases))
+model = policy.load(HERE / "policy.bin").sequential()
+with torch.no_grad():
+    scores = model(torch.tensor(np.array(list(observations(10_000)))))
 two, actions = scores.topk(2).values, scores.argmax(1)
 actions[two[:, 0] - two[:, 1] < 1e-4] = 3
 quarters = actions.numpy().astype("u1").reshape(-1, 4)

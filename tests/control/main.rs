@@ -12,6 +12,7 @@ mod mpc;
 mod planner;
 mod recovery;
 mod regulators;
+mod side_by_side;
 mod tvlqr;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};

@@ -1,20 +1,19 @@
-//! What `acrobot_rs.control` computes: functions, each for many states at once, and plans.
+//! What `acrobot_rs.control` computes: functions, each for many states at once.
 
-use acrobot::arithmetic::{Arithmetic, Damped, Real};
+use std::ffi::CString;
+
+use acrobot::arithmetic::Damped;
 use acrobot::control::model::{LinearModel, StepModel};
-use acrobot::control::plan::{self, Cost, Knot, Plan, Problem};
-use acrobot::control::regulator::{self, Feedback, Lqe, Lqr, dlqe, dlqr, lqr, tvlqr};
-use acrobot::numpy::Pcg64;
+use acrobot::control::regulator::{Lqe, Lqr, dlqe, dlqr, lqr, tvlqr};
 use acrobot::physics::Pendulum;
-use acrobot::{Error, Fast, Portable, State};
+use acrobot::{Error, Portable, State};
 use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
 
-use crate::batch::parse;
+use crate::estimate::{Named, named_numbers};
 use crate::single::{Acrobot, One};
-use crate::{NAMES, Params, alone, held, invalid, named, rejected, wrong};
+use crate::{Params, alone, invalid, named, rejected, wrong};
 
 /// Applies a function to each row of inputs. Returns the results of all rows.
 #[pyfunction]
@@ -25,11 +24,12 @@ pub fn compute<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let (py, one) = (acrobot.py(), alone(acrobot)?.acrobot.clone());
     let rows = rows.as_slice()?.chunks_exact(rows.shape()[1]);
+    let mut clamped = None;
     let results: PyResult<_> = py.detach(|| {
         let mut results = Vec::new();
         for row in rows {
             results.extend(match function {
-                "simulate" => simulate(one.clone(), row)?,
+                "simulate" => simulate(one.clone(), row, &mut clamped)?,
                 _ => {
                     results_of(function, one.params(), row).map_err(|error| match error.name() {
                         // As in python-control.
@@ -43,19 +43,56 @@ pub fn compute<'py>(
         let infinite = results.iter().find(|x| !f64::is_finite(**x));
         infinite.map_or(Ok(()), |x| Err(wrong("the numbers", rule, x))).map(|()| results)
     });
-    Ok(PyArray1::from_vec(py, results?))
+    let results = results?;
+    if let Some((name, bound)) = clamped {
+        let what = "simulate clamped a velocity at its bound, as an environment does";
+        let warning = CString::new(format!("{what}: {name}={bound:.4} rad/s; inf is no bound"))?;
+        // For the line that calls `simulate`, which calls `_call`: once by default.
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &warning, 3)?;
+    }
+    Ok(PyArray1::from_vec(py, results))
 }
 
+/// A bound of a velocity, by its name, rad/s.
+type Clamped = Option<(&'static str, f64)>;
+
 /// The state that a row begins with, and that after each torque.
-fn simulate(mut acrobot: One, row: &[f64]) -> PyResult<Vec<f64>> {
+fn simulate(mut acrobot: One, row: &[f64], clamped: &mut Clamped) -> PyResult<Vec<f64>> {
     let Some((&state, torques)) = row.split_first_chunk::<4>() else { return Ok(Vec::new()) };
     acrobot.set_state(State::from(state))?;
+    let Params { max_velocity1, max_velocity2, .. } = acrobot.params();
     let mut states = state.to_vec();
     for &torque in torques {
         acrobot.step(torque)?;
-        states.extend(<[f64; 4]>::from(acrobot.state()));
+        let state = acrobot.state();
+        if state.dtheta1.abs() >= max_velocity1 {
+            *clamped = Some(("MAX_VEL_1", max_velocity1));
+        } else if state.dtheta2.abs() >= max_velocity2 {
+            *clamped = Some(("MAX_VEL_2", max_velocity2));
+        }
+        states.extend(<[f64; 4]>::from(state));
     }
     Ok(states)
+}
+
+/// The parameters with a rotor behind a gear in the elbow, or with inertias about the joints.
+#[pyfunction]
+pub fn params_with(
+    acrobot: &Bound<'_, Acrobot>,
+    rotor: Option<[f64; 2]>,
+    inertias: Option<[f64; 2]>,
+) -> PyResult<Named<f64>> {
+    let mut params = alone(acrobot)?.acrobot.params();
+    params = rotor.map_or(params, |[inertia, gear]| params.with_rotor(inertia, gear));
+    params = inertias.map_or(params, |inertias| params.with_inertias_about_joints(inertias));
+    params.validate().map_err(|error| invalid(error, None))?;
+    Ok(named_numbers(&params))
+}
+
+/// The parameters by Rust's names.
+#[pyfunction]
+pub fn fields(acrobot: &Bound<'_, Acrobot>) -> PyResult<Vec<(&'static str, f64)>> {
+    Ok(alone(acrobot)?.acrobot.params().numbers().into())
 }
 
 /// The results for a row: vectors of four numbers, then the other numbers.
@@ -110,220 +147,4 @@ fn results_of(function: &str, params: Params, row: &[f64]) -> Result<Vec<f64>, E
         }
         _ => Vec::new(),
     })
-}
-
-/// The tries between two calls of `progress`: a multiple of the ten lengths of a plan.
-const PORTION: u32 = 40;
-
-/// A state, a torque and gains.
-type Row = [f32; 9];
-
-type Matrix = [[f32; 4]; 4];
-
-/// Replaces weights, in their order, by those that are given.
-fn weigh<S: Real>(cost: &mut Cost<S>, given: &[Option<f64>]) {
-    let Cost { q, qf, angles, torque, torque_change, power, below, height, margin, arrival } = cost;
-    let numbers = [torque, torque_change, power, below, height, margin, arrival];
-    let matrices = [q, qf].into_iter().flat_map(|rows| rows.as_flattened_mut());
-    for (weight, given) in matrices.chain(angles).chain(numbers).zip(given) {
-        *weight = given.map_or(*weight, S::from_f64);
-    }
-}
-
-/// The parameters of an acrobot, if `f32` holds them.
-fn machine(acrobot: &Bound<'_, Acrobot>) -> PyResult<Params> {
-    let params = alone(acrobot)?.acrobot.params();
-    let mut numbers = NAMES.into_iter().zip(params.numbers());
-    numbers.try_for_each(|(name, (_, number))| held::<f32>(name, number).map(drop))?;
-    Ok(params)
-}
-
-/// A result in `f32`. Its error is that of `f64`, if there is one, which shows the numbers before
-/// they are rounded.
-fn narrow<T, U>(
-    narrow: impl FnOnce() -> Result<T, Error>,
-    wide: impl FnOnce() -> Result<U, Error>,
-) -> PyResult<T> {
-    narrow().map_err(|error| {
-        let error = wide().err().unwrap_or(error);
-        match error.name().strip_prefix("the largest torque") {
-            Some(rest) => named(error, format_args!("max_torque{rest}")),
-            None => invalid(error, None),
-        }
-    })
-}
-
-fn planner<A: Arithmetic>(
-    params: Params,
-    [max_torque, elbow]: [f64; 2],
-    weights: &[Option<f64>],
-) -> Result<plan::Planner<A>, Error> {
-    let number = A::Scalar::from_f64;
-    let mut problem = Problem::balance::<A>(params.cast(), number(max_torque), number(elbow))?;
-    weigh(&mut problem.cost, weights);
-    plan::Planner::new(&problem)
-}
-
-/// Plans motions to an equilibrium.
-#[pyclass(module = "acrobot_rs._native")]
-pub struct Planner {
-    planner: plan::Planner<Damped<Fast>>,
-    arguments: Py<PyTuple>,
-}
-
-#[pymethods]
-impl Planner {
-    #[new]
-    fn new(
-        acrobot: &Bound<'_, Acrobot>,
-        max_torque: f64,
-        elbow: f64,
-        velocity_clamp: bool,
-        weights: Vec<Option<f64>>,
-    ) -> PyResult<Self> {
-        let (params, numbers) = (machine(acrobot)?, [max_torque, elbow]);
-        let planner = narrow(
-            || planner::<Damped<Fast>>(params, numbers, &weights),
-            || planner::<Damped<Portable>>(params, numbers, &weights),
-        )?;
-        let planner = if velocity_clamp { planner.with_velocity_clamp() } else { planner };
-        let copy = alone(acrobot)?.clone();
-        let arguments = (copy, max_torque, elbow, velocity_clamp, weights);
-        let arguments = arguments.into_pyobject(acrobot.py())?.unbind();
-        Ok(Self { planner, arguments })
-    }
-
-    /// Every protocol of pickle calls this, and `copy.deepcopy`.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
-        Ok((slf.get_type(), alone(slf)?.arguments.clone_ref(slf.py())))
-    }
-
-    /// What holds the target after each plan.
-    fn after(slf: &Bound<'_, Self>) -> PyResult<After> {
-        let this = alone(slf)?;
-        let Feedback { target, torque, moving, resting, reach } =
-            *this.planner.regulator().feedback();
-        let region = |regulator::Region { gain, factor }| (gain, factor);
-        Ok((target.into(), torque, region(moving), region(resting), reach))
-    }
-
-    fn holds_from(slf: &Bound<'_, Self>, state: [f32; 4]) -> PyResult<bool> {
-        Ok(alone(slf)?.planner.regulator().holds_from(state.into()))
-    }
-
-    fn plan(
-        slf: &Bound<'_, Self>,
-        state: [f32; 4],
-        steps: u16,
-        tries: u32,
-        seed: Bound<'_, PyAny>,
-        progress: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<Vec<Row>> {
-        let (py, mut rng) = (slf.py(), Pcg64::from(parse(seed)?));
-        for done in (0..tries).step_by(PORTION as usize) {
-            let portion = PORTION.min(tries - done);
-            let found = {
-                let planner = &mut alone(slf)?.planner; // `progress` may use it, too
-                py.detach(|| planner.plan(state.into(), portion, &mut rng, steps.into()))
-            };
-            match found {
-                Ok(plan) => return Ok(plan.knots.iter().map(row).collect()),
-                Err(Error::NoPlan { .. }) => py.check_signals()?,
-                Err(error) => return Err(rejected(error)),
-            }
-            if let Some(progress) = &progress {
-                progress.call1((done + portion,))?;
-            }
-        }
-        Err(PyRuntimeError::new_err(Error::NoPlan { tries }.to_string()))
-    }
-
-    fn improve(
-        slf: &Bound<'_, Self>,
-        state: [f32; 4],
-        plan: Vec<Row>,
-        iterations: u32,
-    ) -> PyResult<(Vec<Row>, f32)> {
-        let mut plan: Vec<_> = plan.into_iter().map(knot).collect();
-        let planner = &mut alone(slf)?.planner;
-        let cost = slf.py().detach(|| planner.improve(state.into(), iterations, &mut plan));
-        Ok((plan.iter().map(row).collect(), cost.map_err(rejected)?))
-    }
-
-    fn improve_each(
-        slf: &Bound<'_, Self>,
-        states: Vec<[f32; 4]>,
-        plans: Vec<Vec<Row>>,
-        iterations: u32,
-    ) -> PyResult<(Vec<Vec<Row>>, Vec<f32>)> {
-        let states: Vec<_> = states.into_iter().map(State::from).collect();
-        let knots = |plan: Vec<_>| plan.into_iter().map(knot).collect::<Vec<_>>();
-        let mut plans: Vec<_> = plans.into_iter().map(knots).collect();
-        let planner = &mut alone(slf)?.planner;
-        let costs = slf.py().detach(|| planner.improve_each(&states, iterations, &mut plans));
-        let rows = plans.iter().map(|plan| plan.iter().map(row).collect()).collect();
-        Ok((rows, costs.map_err(rejected)?))
-    }
-}
-
-fn knot([x1, x2, x3, x4, torque, k1, k2, k3, k4]: Row) -> Knot<f32> {
-    let mut knot = Knot::open(torque);
-    (knot.state, knot.gain) = ([x1, x2, x3, x4].into(), [k1, k2, k3, k4]);
-    knot
-}
-
-fn row(&Knot { state, torque, gain: [k1, k2, k3, k4], .. }: &Knot<f32>) -> Row {
-    let [x1, x2, x3, x4] = state.into();
-    [x1, x2, x3, x4, torque, k1, k2, k3, k4]
-}
-
-/// A gain and the region in which its torque lasts.
-type Region = ([f32; 4], Matrix);
-
-/// The fields of a feedback.
-type After = ([f32; 4], f32, Region, Region, f32);
-
-/// The torque at a knot, or without one that after a plan, N m.
-#[pyfunction]
-pub fn plan_torque(row: Option<Row>, after: After, state: [f32; 4]) -> PyResult<f32> {
-    let (target, torque, moving, resting, reach) = after;
-    let region = |(gain, factor)| regulator::Region { gain, factor };
-    let (target, moving, resting) = (target.into(), region(moving), region(resting));
-    let after = Feedback { target, torque, moving, resting, reach };
-    match (Plan { knots: row.map(knot).as_slice(), after }).torque(0, state.into()) {
-        torque if torque.is_finite() => Ok(torque),
-        torque => Err(wrong("state", "so near the plan that the torque is finite", torque)),
-    }
-}
-
-/// Swings up without a plan.
-#[pyclass(module = "acrobot_rs._native")]
-pub struct SwingUp {
-    swing_up: plan::SwingUp<Damped<Fast>>,
-    arguments: (Acrobot, f64),
-}
-
-#[pymethods]
-impl SwingUp {
-    #[new]
-    #[pyo3(signature = (acrobot, max_torque, is_holding = false))]
-    fn new(acrobot: &Bound<'_, Acrobot>, max_torque: f64, is_holding: bool) -> PyResult<Self> {
-        let params = machine(acrobot)?;
-        let mut swing_up = narrow(
-            || plan::SwingUp::new(params.cast(), max_torque as f32),
-            || plan::SwingUp::<Damped<Portable>>::new(params, max_torque),
-        )?;
-        swing_up.is_holding = is_holding;
-        Ok(Self { swing_up, arguments: (alone(acrobot)?.clone(), max_torque) })
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
-        let this = alone(slf)?;
-        let (acrobot, max_torque) = this.arguments.clone();
-        Ok((slf.get_type(), (acrobot, max_torque, this.swing_up.is_holding)))
-    }
-
-    fn torque(slf: &Bound<'_, Self>, state: [f32; 4]) -> PyResult<f32> {
-        alone(slf)?.swing_up.torque(state.into()).map_err(rejected)
-    }
 }

@@ -6,6 +6,7 @@ mod engine;
 mod estimate;
 mod instruments;
 mod mpc;
+mod plan;
 mod pool;
 mod single;
 
@@ -44,11 +45,13 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::control::{Planner, SwingUp, compute, plan_torque};
+    use super::control::{compute, fields, params_with};
     #[pymodule_export]
     use super::estimate::{Estimator, calibrate, identify};
     #[pymodule_export]
     use super::mpc::{Controller, Replanner};
+    #[pymodule_export]
+    use super::plan::{Planner, SwingUp, plan_torque};
     #[pymodule_export]
     use super::single::Acrobot;
     use super::*;

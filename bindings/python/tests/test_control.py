@@ -5,6 +5,8 @@ import inspect
 import pickle
 import re
 import signal
+import threading
+import time
 from zlib import crc32
 
 import acrobot_rs
@@ -71,22 +73,30 @@ REPLANNER = control.Replanner(ENV, **SETTINGS)
 MODEL = dict(zip("AB", control.linearize_step(control.UPRIGHT)), Q=ONE, R=1.0)
 #: Valid values of all arguments, by their names.
 WEIGHTS = "torque", "torque_change", "power", "below", "height", "margin", "arrival"
-VALUES = dict.fromkeys((*WEIGHTS, "max_torque", "elbow"), 1.0) | NOISE | MODEL
+VALUES = dict.fromkeys((*WEIGHTS, "max_torque", "inertia", "gear"), 1.0) | NOISE | MODEL
 VALUES |= dict.fromkeys(("state", "target"), REST) | dict.fromkeys(("q", "qf", "Qf"), ONE)
 VALUES |= {"accelerations": [0.0] * 2, "torques": [1.0], "angles": [0.0] * 2, "env": ENV}
 VALUES |= {"W": ONE, "S": [1.0] * 2}
 VALUES |= {"step": 0, "steps": 9, "tries": 1, "seed": 0, "progress": print, "iterations": 1}
 VALUES |= {"plan": PLAN, "plans": [PLAN], "states": [REST]}
-VALUES |= {"velocity_clamp": True, "parameter_std": {}}
+VALUES |= {"velocity_clamp": True, "parameter_std": {}, "elbow": 0.0, "inertias": [1.0] * 2}
+VALUES |= {"path": "plan.rs", "gain": REST, "params": ENV}
 VALUES |= SETTINGS | {"controller": CONTROLLER}
 CALLS = [
     *(getattr(control, each) for each in control.__all__ if each[0].islower()),
     *(control.Animation, control.Estimator, ESTIMATOR.correct, ESTIMATOR.predict),
-    *(control.Planner, PLANNER.plan, PLANNER.improve, PLANNER.improve_each, PLANNER.holds_from),
+    *(
+        control.Planner,
+        PLANNER.plan,
+        PLANNER.plan_each,
+        PLANNER.improve,
+        PLANNER.improve_each,
+        PLANNER.holds_from,
+    ),
     *(control.Controller, CONTROLLER.tick, control.Replanner, REPLANNER.exchange),
     *(PLAN.torque, control.SwingUp, control.SwingUp(6.0).torque),
 ]
-NO_ARRAYS = "plan", "plans", "parameter_std", "controller"
+NO_ARRAYS = "plan", "plans", "parameter_std", "controller", "path", "params"
 RECORDING = {"angles": [[[0.0, 0.1]] * 9], "torques": [[0.0] * 9]}
 OTHERS = gymnasium.make("Acrobot-v1"), acrobot_rs.AcrobotVectorEnv(2), acrobot_rs.AcrobotEnv
 
@@ -100,7 +110,7 @@ def test_an_error_names_the_argument_the_rule_and_the_value(call, name):
     for bad in (NAN, -np.inf, "a", {}, *OTHERS * (name == "env")):
         is_array = isinstance(bad, float) and name not in NO_ARRAYS
         value = np.full(np.shape(values[name]), bad) if is_array else bad
-        if (name, value) != ("parameter_std", {}):
+        if (name, value) not in (("parameter_std", {}), ("params", {})):
             with pytest.raises((ValueError, TypeError)) as error:
                 call(**{each: values[each] for each in names} | {name: value})
             assert re.match(rf"{name} must be .*, got .*{re.escape(repr(bad))}", str(error.value))
@@ -176,6 +186,79 @@ def test_a_search_can_be_interrupted_or_find_no_plan():
     signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background of a shell
     with pytest.raises(KeyboardInterrupt):
         planner.plan([0, 0, 0, 0], steps=50, progress=lambda _: signal.raise_signal(signal.SIGINT))
+
+
+def test_plans_from_many_states_are_those_from_each():
+    angles = np.linspace(-np.pi, np.pi, 8)
+    states, calls = np.stack([angles, 0 * angles, 0 * angles, angles], axis=1), []
+    arguments = {"steps": 80, "tries": 12, "seed": 3}
+    plans, mask = PLANNER.plan_each(states, **arguments, progress=calls.append)
+    for state, plan, has_plan in zip(states, plans, mask, strict=True):
+        assert has_plan == (plan is not None)
+        try:
+            assert PLANNER.plan(state, **arguments) == plan
+        except RuntimeError:
+            assert plan is None
+    assert 0 < mask.sum() < 8 and calls[-1] == mask.sum() and calls == sorted(calls)
+    assert PLANNER.plan_each(np.zeros((0, 4)), steps=9)[0] == []
+
+
+def test_ctrl_c_ends_a_search_from_many_states():
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    begin = time.perf_counter()
+    threading.Timer(0.3, signal.pthread_kill, (threading.get_ident(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        control.Planner(1e-3).plan_each(np.zeros((99, 4)), steps=65_535)
+    assert time.perf_counter() - begin < 1.3
+
+
+def test_a_plan_ends_in_the_target():
+    bent = control.Planner(12.0, FRICTION, elbow=1.0).plan(REST, steps=200)
+    again = control.Planner(12.0, FRICTION, target=bent.after.target).plan(REST, steps=200)
+    assert_allclose(again.after.torque, bent.after.torque, rtol=1e-5)
+    brake = control.Planner(6.0, FRICTION, target=REST, q=ONE, qf=ONE, below=0, arrival=0)
+    plan = pickle.loads(pickle.dumps(brake)).plan([1.0, 0.5, -1.0, 0.0], steps=150)
+    path = control.simulate([1.0, 0.5, -1.0, 0.0], plan.torques, FRICTION)
+    assert_allclose(path[:-1], plan.states, atol=1e-3)
+    assert plan.after.target == REST and brake.holds_from(path[-1])
+
+
+def test_parameters_of_data_sheets():
+    """A rotor on link 1 turns at θ̇1 - 6 θ̇2."""
+    rotor = acrobot_rs.AcrobotEnv(**control.with_rotor(0.01, 6.0, ENV))
+    state = [0.0, 0.7, 0.0, 0.0]
+    added = control.mass_matrix(state, rotor) - control.mass_matrix(state, ENV)
+    assert_allclose(added, 0.01 * np.outer([1.0, -6.0], [1.0, -6.0]), atol=1e-12)
+    about = acrobot_rs.AcrobotEnv(**control.with_inertias_about_joints([0.9, 0.8], ENV))
+    assert_allclose(control.mass_matrix(state, about)[1, 1], 0.8)
+    assert about.parameters["DAMPING_1"] == 0.2 and about.dt == 0.05
+    with pytest.raises(ValueError, match="LINK_MOI_1 must be .* got -"):
+        control.with_inertias_about_joints([0.1, 0.8], ENV)
+
+
+def test_what_is_found_is_saved_for_firmware(tmp_path):
+    """`test_docs.py` has whole files, which firmware embeds."""
+    nips = acrobot_rs.AcrobotEnv(**PARAMS, book_or_nips="nips")
+    params = control.with_rotor(2.5e-8, 6.0, nips)
+    control.Fit(params, {}, {}, {}, 0).save(tmp_path / "machine.rs")
+    control.save(tmp_path / "machine.h", gain=ONE[0], params=acrobot_rs.AcrobotEnv(**params))
+    rust, c = ((tmp_path / f"machine.{end}").read_text() for end in ("rs", "h"))
+    for part in ("    mass1: 1.3,", "    rotor: 1.05e-6,", "[-1.0, 0.0, 1.0],", "Dynamics::Nips,"):
+        assert f"{part}\n" in rust
+    for part in ("GAIN[4] = {1.0, 0.0, 0.0, 0.0};", "    1.05e-6, // rotor", "_DYNAMICS_NIPS,"):
+        assert f"{part}\n" in c
+    PLAN.save(tmp_path / "plan.rs")
+    assert f"[Knot<f32>; {len(PLAN)}]" in (tmp_path / "plan.rs").read_text()
+    with pytest.raises(ValueError, match=r"path must be a file that ends in \.rs or \.h, got 'x'"):
+        control.save("x", gain=REST)
+
+
+def test_a_clamped_velocity_is_said():
+    env = acrobot_rs.AcrobotEnv(dt=0.05, MAX_VEL_2=3.0)
+    with pytest.warns(UserWarning, match=r"at its bound, .*: MAX_VEL_2=3.0000 rad/s") as caught:
+        control.simulate(REST, [9.0] * 20, env)
+    assert caught[0].filename == __file__
+    control.simulate(REST, [9.0], env)  # below the bound: without a warning
 
 
 @pytest.mark.parametrize("dt, frames", [(0.01, 76), (0.2, 16)])

@@ -8,7 +8,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 
 
-NAMES = "python", "python-control", "python-many", "python-parameters", "swingup"
+PYTHON = "control", "firmware", "many", "parameters"
+NAMES = "python", *(f"python-{name}" for name in PYTHON), "swingup"
 PAGES = ["README.md", "bindings/python/README.md", *(f"docs/{name}.md" for name in NAMES)]
 
 
@@ -25,3 +26,16 @@ def test_code_runs_and_prints_what_its_comments_say(name, capsys, tmp_path, monk
         assert capsys.readouterr().out.splitlines() == re.findall(
             r"^# prints (.*)", block, re.MULTILINE
         )
+    if name == "docs/python-firmware.md":  # what the firmwares embed
+        for committed in ("examples/cortex-m/src/plan.rs", "bindings/c/firmware/plan.h"):
+            written = (tmp_path / Path(committed).name).read_bytes()
+            assert written == (ROOT / committed).read_bytes(), committed
+
+
+def test_parameters_are_written_in_the_order_of_the_header():
+    header = (ROOT / "bindings/c/include/acrobot.h").read_text()
+    struct = header[: header.index("} acrobot_params_t;")].rpartition("typedef struct {")[2]
+    written = (ROOT / "bindings/c/firmware/plan.h").read_text().split("PARAMS")[1]
+    written = re.sub(r"[^\n]*(torque_noise)", r"// torques\n// \1", written)
+    names = [*re.findall(r"// (\w+)$", written, re.MULTILINE), "dynamics"]
+    assert names == re.findall(r"^  \w+ (\w+)(?:\[3\])?;", struct, re.MULTILINE)

@@ -3,6 +3,7 @@
 Stand-ins have the attributes of torch's modules.
 """
 
+import sys
 from pathlib import Path
 from types import SimpleNamespace as Attributes
 
@@ -12,6 +13,7 @@ import pytest
 from acrobot_rs import policy
 
 RNG = np.random.default_rng(7)
+POLICY = Path(__file__).parents[3] / "crates/policy/policy.bin"
 
 
 class Tensor(np.ndarray):
@@ -121,9 +123,45 @@ def test_an_action_is_a_torque_or_in_a_swing_up_becomes_one(env, given, limit, f
 
 def test_a_file_is_the_one_that_rust_plays(tmp_path):
     """The test of `crates/policy` plays it."""
-    played = Path(__file__).parents[3] / "crates/policy/torque.bin"
     policy.write(tmp_path / "p", [([[3e38, 0, 3e38, 0, -3e38, 0]], [0], "none")], 2.0)
-    assert (tmp_path / "p").read_bytes() == played.read_bytes()
+    assert (tmp_path / "p").read_bytes() == POLICY.with_name("torque.bin").read_bytes()
+
+
+def test_a_file_is_loaded_played_and_written_again(tmp_path):
+    """`actions.bin` has torch's actions on the observations of `record.py`, 3 for a tie."""
+    loaded = policy.load(POLICY)
+    assert [weights.shape for weights, *_ in loaded.layers] == [(64, 6), (64, 64), (3, 64)]
+    policy.write(tmp_path / "again", *loaded)
+    assert (tmp_path / "again").read_bytes() == POLICY.read_bytes()
+    env = acrobot_rs.AcrobotVectorEnv(1, autoreset_mode="SameStep")
+    env.single_action_space.seed(1)
+    seen = [env.reset(seed=1)[0]]
+    seen += [env.step([env.single_action_space.sample()])[0] for _ in range(9_999)]
+    expected = np.frombuffer(POLICY.with_name("actions.bin").read_bytes(), np.uint8)
+    expected = (expected[:, None] >> [0, 2, 4, 6] & 3).ravel()
+    actions = loaded.act(seen)[:, 0]
+    assert ((actions == expected) | (expected == 3)).all()
+    loaded.layers[0][0][:] = 0.0  # the arrays can be trained
+    torque = policy.load(POLICY.with_name("torque.bin"))  # of 3e38 (x0 + x2 - x4), N m
+    observations = [[[1, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [1, 0, 1, 0, 0, 0]]]
+    assert torque.act(observations).tolist() == [[2.0, 0.0, 0.0]], "infinity is no torque"
+
+
+def test_a_loaded_policy_becomes_modules_of_torch(monkeypatch):
+    kinds = {"Linear": Linear, "Tanh": Tanh, "ReLU": ReLU, "Sequential": lambda *modules: modules}
+    nn = Attributes(**kinds, Parameter=lambda x: x.view(Tensor))
+    monkeypatch.setitem(sys.modules, "torch", Attributes(nn=nn, as_tensor=np.asarray))
+    layers = policy._layers(policy.load(POLICY).sequential())
+    for found, expected in zip(layers, policy.load(POLICY).layers, strict=True):
+        assert (found[0] == expected[0]).all() and (found[1] == expected[1]).all()
+        assert found[2] == expected[2]
+
+
+@pytest.mark.parametrize("damage", [lambda x: x[:9], lambda x: x[:-1] + b"?", lambda x: x[:16]])
+def test_other_files_are_rejected(damage, tmp_path):
+    (tmp_path / "p").write_bytes(damage(POLICY.read_bytes()))
+    with pytest.raises(ValueError, match="p must be a file that .* write wrote, got .* other byte"):
+        policy.load(tmp_path / "p")
 
 
 def dqn(*modules):

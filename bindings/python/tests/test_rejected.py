@@ -157,6 +157,19 @@ def test_an_unknown_name_is_rejected(kind):
     type("Own", (kind,), {})().curriculum_level = 3
 
 
+class Mixin:
+    def _terminal(self):
+        return False
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_method_that_only_gymnasium_calls_is_rejected(kind):
+    with pytest.raises(TypeError, match=r"^Own\._dsdt has no effect here; set parameters, such as"):
+        type("Own", (kind,), {"_dsdt": lambda self, s: s})
+    with pytest.raises(TypeError, match=r"^Own\._terminal has no effect here; override step"):
+        type("Own", (Mixin, kind), {})
+
+
 def test_environments_that_do_not_fit_into_memory_are_rejected():
     """In a process that may use 64 GB: these need 400 GB."""
     resource = pytest.importorskip("resource")

@@ -1,4 +1,5 @@
-// 20 decisions a second, at most 8 N m. Written by `plan`.
+// Written by acrobot_rs.control.save in Python.
+// 20 decisions a second.
 use acrobot::State;
 use acrobot::control::plan::{Knot, Plan};
 use acrobot::control::regulator::{Feedback, Region};
@@ -121,4 +122,30 @@ after: Feedback {
     ] },
     reach: 0.0,
 },
+};
+
+// K in u = -K x, N m per rad and per rad/s.
+pub const GAIN: [f32; 4] = [-157.31233, -38.643085, -74.13112, -23.89762];
+
+pub const PARAMS: acrobot::Params<f32> = acrobot::Params {
+    length1: 1.0,
+    length2: 1.0,
+    mass1: 1.0,
+    mass2: 1.0,
+    center_of_mass1: 0.5,
+    center_of_mass2: 0.5,
+    inertia1: 1.0,
+    inertia2: 1.0,
+    gravity: 9.8,
+    dt: 0.05,
+    max_velocity1: 12.566371,
+    max_velocity2: 28.274334,
+    torque_noise: 0.0,
+    damping1: 0.0,
+    damping2: 0.0,
+    coulomb1: 0.0,
+    coulomb2: 0.0,
+    rotor: 0.0,
+    torques: [-1.0, 0.0, 1.0],
+    dynamics: acrobot::physics::Dynamics::Book,
 };

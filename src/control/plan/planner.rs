@@ -215,6 +215,7 @@ impl<A: Arithmetic> Planner<A> {
                 result = (done.cost, done.end);
                 false
             },
+            || true,
         );
         result
     }

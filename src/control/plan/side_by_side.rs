@@ -1,7 +1,7 @@
 //! Plans side by side, with SIMD.
 
 use alloc::vec::Vec;
-use core::cell::RefCell;
+use core::cell::{Cell, RefCell};
 
 use rand_core::Rng;
 
@@ -20,6 +20,23 @@ type Side<S> = Lanes<S, LANES>;
 
 /// A plan that owns its knots.
 type Owned<S> = Plan<S, Vec<Knot<S>>>;
+
+/// The search for a plan from a state.
+struct Search<S, R> {
+    start: State<S>,
+    rng: R,
+    tried: u32,
+    found: Option<Found<S, R>>,
+}
+
+/// The first try of a search that succeeds.
+struct Found<S, R> {
+    /// How many tries of all searches began before it.
+    index: usize,
+    knots: Vec<Knot<S>>,
+    /// The generator after its guess.
+    rng: R,
+}
 
 impl<A: Arithmetic> Planner<A> {
     /// Plans from a state, with at most so many steps, and 16 tries side by side after the first
@@ -59,42 +76,103 @@ impl<A: Arithmetic> Planner<A> {
             Err(Error::NoPlan { .. }) => {}
             Err(error) => return Err(error),
         }
+        let search = Search { start, rng: rng.clone(), tried: LENGTHS, found: None };
+        let [search] = self.search([search], tries, &mut guess, |_| true)?;
+        *rng = search.rng;
+        let found = search.found.ok_or(Error::NoPlan { tries })?;
+        *rng = found.rng;
+        Ok(Plan { knots: found.knots, after: *self.regulator().feedback() })
+    }
+
+    /// Plans from many states, 16 tries side by side. A plan is that of [`plan`](Self::plan) from
+    /// its state with a clone of the generator, and `None` where that finds none. Before each pass
+    /// over the knots `go_on` gets the number of states that have a plan, and says whether to
+    /// continue: without that, states can be left without a plan.
+    ///
+    /// ```
+    /// # use acrobot::control::plan::{Planner, Problem};
+    /// # use acrobot::{Fast, Params, State, numpy::Pcg64};
+    /// let problem = Problem::swing_up(Params { dt: 0.02, ..Params::DEFAULT }, 5.0)?; // N m
+    /// let mut planner = Planner::<Fast>::new(&problem)?;
+    /// let starts = [State::HANGING, State { theta1: 1.0, ..State::HANGING }]; // rad
+    /// let plans = planner.plan_each(&starts, 64, &Pcg64::new(1), 250, |_| true)?;
+    /// let second = planner.plan(starts[1], 64, &mut Pcg64::new(1), 250)?; // at most 5 s
+    /// assert_eq!(plans[1], Some(second));
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] if a number of a state is not finite, and [`Error::OutOfMemory`].
+    pub fn plan_each<R: Rng + Clone>(
+        &mut self,
+        starts: &[State<A::Scalar>],
+        tries: u32,
+        rng: &R,
+        steps: usize,
+        go_on: impl FnMut(usize) -> bool,
+    ) -> Result<Vec<Option<Owned<A::Scalar>>>, Error> {
+        starts.iter().try_for_each(State::validate)?;
+        let search = |&start| Search { start, rng: rng.clone(), tried: 0, found: None };
+        let searches: Vec<_> = starts.iter().map(search).collect();
+        let searches = self.search(searches, tries, &mut memory(Knot::EMPTY, steps)?, go_on)?;
+        let after = *self.regulator().feedback();
+        let plan = |Found { knots, .. }| Plan { knots, after };
+        Ok(searches.into_iter().map(|search| search.found.map(plan)).collect())
+    }
+
+    /// Searches side by side, with at most so many tries each. `guess` is memory for the longest.
+    fn search<R: Rng + Clone, L: AsMut<[Search<A::Scalar, R>]>>(
+        &mut self,
+        mut all: L,
+        tries: u32,
+        guess: &mut [Knot<A::Scalar>],
+        mut go_on: impl FnMut(usize) -> bool,
+    ) -> Result<L, Error> {
+        let steps = guess.len();
         let mut knots = memory(empty(), steps)?;
         let mut guesser = self.clone();
-        let mut tried = LENGTHS;
-        // The first try that succeeds, and the generators after the guess of each lane.
-        let found = RefCell::new((usize::MAX, None));
-        let after = RefCell::new([const { None }; LANES]);
+        let searches = RefCell::new(all.as_mut());
+        // The search of each lane, and its generator after the guess.
+        let begun = RefCell::new([const { None }; LANES]);
+        let count = Cell::new(0);
         let next = |knots: &mut [Knot<Side<A::Scalar>>], lane: usize| {
-            while tried < tries && found.borrow().1.is_none() {
-                let guess = guess.get_mut(..len_of_try(tried, steps))?;
-                tried += 1;
+            let mut searches = searches.borrow_mut();
+            loop {
+                let open = searches.iter_mut().enumerate();
+                let open = open.filter(|(_, each)| each.found.is_none() && each.tried < tries);
+                let (i, search) = open.min_by_key(|(_, each)| each.tried)?;
+                let guess = guess.get_mut(..len_of_try(search.tried, steps))?;
+                search.tried += 1;
                 // Extreme parameters can make a guess overflow.
-                if guesser.guess(start, rng, guess).is_ok() {
+                if guesser.guess(search.start, &mut search.rng, guess).is_ok() {
                     set_plan(knots, lane, guess);
-                    *after.borrow_mut().get_mut(lane)? = Some(rng.clone());
-                    return Some((guess.len(), start));
+                    *begun.borrow_mut().get_mut(lane)? = Some((i, search.rng.clone()));
+                    return Some((guess.len(), search.start));
                 }
             }
-            None
         };
         let take = |Done { index, oldest, lane, knots, cost, end }: Done<'_, _, Side<_>>| {
-            let (first, plan) = &mut *found.borrow_mut();
-            if index < *first {
+            let mut searches = searches.borrow_mut();
+            let begun = begun.borrow_mut().get_mut(lane).and_then(Option::take);
+            if let Some((i, rng)) = begun
+                && let Some(Search { found, .. }) = searches.get_mut(i)
+                && found.as_ref().is_none_or(|found| index < found.index)
+            {
                 let mut knots: Vec<_> = knots.iter().map(|knot| knot.lane(lane)).collect();
                 if self.is_success(cost, end, &mut knots) {
-                    let rng = after.borrow_mut().get_mut(lane).and_then(Option::take);
-                    (*first, *plan) = (index, Some((knots, rng)));
+                    count.set(count.get() + usize::from(found.is_none()));
+                    *found = Some(Found { index, knots, rng });
                 }
             }
             // A try that began before may succeed, too.
-            oldest < *first
+            let is_before = |found: &Found<_, _>| oldest < found.index;
+            searches.iter().any(|search| search.found.as_ref().is_none_or(is_before))
         };
         let (machine, lanes) = (self.machine(self.level), &mut [Try::new(); LANES]);
-        tries::improve::<A, _, LANES>(machine, lanes, ITERATIONS, &mut knots, next, take);
-        let (knots, after) = found.into_inner().1.ok_or(Error::NoPlan { tries })?;
-        after.into_iter().for_each(|after| *rng = after);
-        Ok(Plan { knots, after: *self.regulator().feedback() })
+        let go_on = || go_on(count.get());
+        tries::improve::<A, _, LANES>(machine, lanes, ITERATIONS, &mut knots, next, take, go_on);
+        Ok(all)
     }
 
     /// [Improves](Self::improve) plans side by side, each from its own state. Returns their costs,
@@ -152,7 +230,8 @@ impl<A: Arithmetic> Planner<A> {
             true
         };
         let (machine, lanes) = (self.machine(self.level), &mut [Try::new(); LANES]);
-        tries::improve::<A, _, LANES>(machine, lanes, iterations, &mut knots, next, take);
+        let go_on = || true;
+        tries::improve::<A, _, LANES>(machine, lanes, iterations, &mut knots, next, take, go_on);
         Ok(costs)
     }
 }

@@ -61,7 +61,8 @@ pub(super) struct Done<'a, S, V> {
 
 /// Improves plans, each by at most so many iterations, in lanes that begin with [`Try::new`].
 /// `next` writes the next plan into a lane, and returns its length and the state in which it
-/// begins, or `None` without another one. `take` returns whether to go on.
+/// begins, or `None` without another one. `take` returns whether to go on, and so does `go_on`, before
+/// each pass.
 #[inline(never)]
 pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>, const LANES: usize>(
     machine: Machine<'_, A>,
@@ -70,6 +71,7 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>, const LANES: usize>(
     knots: &mut [Knot<V>],
     mut next: impl FnMut(&mut [Knot<V>], usize) -> Option<(usize, State<A::Scalar>)>,
     mut take: impl FnMut(Done<'_, A::Scalar, V>) -> bool,
+    mut go_on: impl FnMut() -> bool,
 ) {
     let number = A::Scalar::from_f64;
     let [zero, one] = [A::Scalar::ZERO, A::Scalar::ONE];
@@ -105,7 +107,7 @@ pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>, const LANES: usize>(
             let keeps = if plan.phase == Phase::Keeps { one } else { zero };
             orders.keep.set_lane(i, keeps);
         }
-        if active == 0 {
+        if active == 0 || !go_on() {
             return;
         }
         let longest = tries.iter().enumerate();

@@ -57,6 +57,15 @@ class Normal:
 
 Drawn = Uniform | LogUniform | Normal
 
+#: What people override in Gymnasium's acrobot, and what has the same effect here.
+_PHYSICS = "set parameters, such as LINK_MASS_1 and DAMPING_1, or override step"
+_OF_GYMNASIUM = {
+    **dict.fromkeys(("_dsdt", "_rk4"), _PHYSICS),
+    "_terminal": "override step, or use a gymnasium.Wrapper",
+    "_get_ob": "override reset and step, or use a gymnasium.ObservationWrapper",
+    "SCREEN_DIM": "resize the frames of render",
+}
+
 
 class Parameters:
     """The parameters of the physics, with Gymnasium's names.
@@ -158,6 +167,13 @@ class Parameters:
     #: Whether actions are numbers in a ``Box``, and what they are.
     _CONTINUOUS = False
     _ACTION = "a torque in N m"
+
+    def __init_subclass__(cls, **others: Any) -> None:
+        """Reject what has an effect in a subclass of Gymnasium's acrobot only."""
+        super().__init_subclass__(**others)
+        for name, instead in _OF_GYMNASIUM.items():
+            if hasattr(cls, name):
+                raise TypeError(f"{cls.__name__}.{name} has no effect here; {instead}")
 
     def __init__(
         self, native: Acrobot | Batch, render_mode: str | None, parameters: Mapping[str, Any]

@@ -1,6 +1,6 @@
 """Saves a trained perceptron for the crate ``crates/policy``: on a microcontroller, in a browser.
 
-:func:`save` takes a model, and :func:`write` arrays.
+:func:`save` takes a model, and :func:`write` arrays. :func:`load` reads a file.
 """
 
 from __future__ import annotations
@@ -9,13 +9,13 @@ import struct
 import zlib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs.arrays import LARGEST, must_be, numbers
+from acrobot_rs.arrays import LARGEST, finite, must_be, numbers
 
 Layer = tuple[Any, Any, str]
 """Weights ``(outputs, inputs)``, biases, and ``"none"``, ``"tanh"`` or ``"relu"``."""
@@ -63,6 +63,72 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
         raise must_be("torque_limit", "finite and above 0 N m in float32", torque_limit)
     content = struct.pack("<4sBBHf", b"MLP1", len(layers), not scores, 6, limit) + head + body
     return content + struct.pack("<I", zlib.crc32(content))
+
+
+class Policy(NamedTuple):
+    """What a file has: ``write(path, *policy)`` writes it again."""
+
+    layers: list[Layer]  #: arrays of ``float32``, which may be changed
+    torque_limit: float | None  #: N m; ``None`` if the outputs are the scores of actions
+
+    def act(self, observations: ArrayLike) -> NDArray[Any]:
+        """The actions for finite observations, ``(..., 6)``: 0 to 2, or torques, N m.
+
+        They have the shape ``(...)``. As in the crate, an output that is not finite gives no
+        torque.
+        """
+        rule = "finite numbers of shape (..., 6)"
+        seen = finite("observations", rule, observations, None)
+        if seen.shape[-1:] != (6,):
+            raise must_be("observations", rule, f"shape {seen.shape}")
+        outputs = _outputs(self.layers, _float32("observations", seen))
+        rest = [0, 1, 0] if self.torque_limit is None else [0]
+        outputs = np.where(np.isfinite(outputs).all(-1, keepdims=True), outputs, np.float32(rest))
+        if self.torque_limit is None:
+            return outputs.argmax(-1)
+        return np.clip(outputs[..., 0], -self.torque_limit, self.torque_limit)
+
+    def sequential(self) -> Any:
+        """A ``torch.nn.Sequential`` of these layers, to train on. :func:`save` takes it."""
+        import torch
+
+        modules: list[Any] = []
+        for weights, biases, activation in self.layers:
+            linear = torch.nn.Linear(weights.shape[1], len(weights))
+            linear.weight, linear.bias = (
+                torch.nn.Parameter(torch.as_tensor(each)) for each in (weights, biases)
+            )
+            kinds = {"none": [], "tanh": [torch.nn.Tanh()], "relu": [torch.nn.ReLU()]}
+            modules += [linear, *kinds[activation]]
+        return torch.nn.Sequential(*modules)
+
+
+def load(path: str | Path) -> Policy:
+    """Read a file of :func:`save` or :func:`write`."""
+    file = Path(path).read_bytes()
+    try:
+        policy = _read(file)
+        is_valid = _content(*policy) == file
+    except (IndexError, ValueError, struct.error):
+        is_valid = False
+    if not is_valid:
+        rule = "a file that acrobot_rs.policy.save or write wrote"
+        raise must_be(str(path), rule, f"{len(file)} other bytes")
+    return policy
+
+
+def _read(file: bytes) -> Policy:
+    """The policy in a file that need not be valid."""
+    count, kind, inputs, limit = struct.unpack_from("<4xBBHf", file)
+    layers: list[Layer] = []
+    at = 12 + 4 * count
+    for i in range(count):
+        outputs, activation = struct.unpack_from("<HB", file, 12 + 4 * i)
+        rows = np.frombuffer(file, "<f4", outputs * (1 + inputs), at).reshape(outputs, -1)
+        layers.append((rows[:, 1:].copy(), rows[:, 0].copy(), _ACTIVATIONS[activation]))
+        at += rows.nbytes
+        inputs = outputs
+    return Policy(layers, limit if kind else None)
 
 
 def _float32(name: str, value: Any) -> NDArray[np.float32]:

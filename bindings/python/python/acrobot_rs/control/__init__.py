@@ -22,9 +22,12 @@ from acrobot_rs.control.model import (
     regulator,
     simulate,
     tvlqr,
+    with_inertias_about_joints,
+    with_rotor,
 )
 from acrobot_rs.control.mpc import Controller, Replanner, Report
 from acrobot_rs.control.plan import Feedback, Plan, Planner, Region, SwingUp
+from acrobot_rs.control.save import save
 
 __all__ = [
     "UPRIGHT",
@@ -53,6 +56,9 @@ __all__ = [
     "lqr",
     "mass_matrix",
     "regulator",
+    "save",
     "simulate",
     "tvlqr",
+    "with_inertias_about_joints",
+    "with_rotor",
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike
 from acrobot_rs import _native
 from acrobot_rs.arrays import finite, independent, must_be
 from acrobot_rs.control.model import Env, Floats, acrobot_of
+from acrobot_rs.control.save import save
 
 #: The parameters that an estimator can find, in the order of the native part: derive.py writes
 #: them.
@@ -113,6 +115,10 @@ class Fit:
     std_errors: dict[str, float]
     weakest: dict[str, float]
     rank_deficiency: int
+
+    def save(self, path: str | Path) -> None:
+        """Write ``params`` as a constant of Rust or C: see :func:`acrobot_rs.control.save`."""
+        save(path, params=self.params)
 
 
 def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env) -> Fit:

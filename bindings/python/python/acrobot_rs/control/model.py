@@ -110,9 +110,38 @@ def simulate(state: ArrayLike, torques: ArrayLike, env: Env = None) -> Floats:
     """The state and those after each of ``n`` torques, N m: ``(..., n + 1, 4)``.
 
     They are bit-identical to those of the environment, but nothing clips the torques or ends the
-    simulation.
+    simulation. A warning says that a velocity was clamped at ``MAX_VEL_1`` or ``MAX_VEL_2``.
     """
     return _call("simulate", (1, 4), env, state=state, torques=torques)
+
+
+def with_rotor(inertia: float, gear: float, env: Env = None) -> dict[str, Any]:
+    """The parameters with the rotor of a geared motor in the elbow: arguments of an environment.
+
+    The rotor has the moment of inertia ``inertia`` about its axis, kg m². It stands on link 1 and
+    turns by ``gear`` for each turn of link 2 against it, in the opposite direction; a negative
+    ``gear`` is in the same direction.
+    """
+    rule = "a finite number of kg m²"
+    rotor = [finite("inertia", rule, inertia), finite("gear", "a finite number", gear)]
+    return _params_with(env, rotor, None)
+
+
+def with_inertias_about_joints(inertias: ArrayLike, env: Env = None) -> dict[str, Any]:
+    """The parameters with these moments of inertia, kg m²: arguments of an environment.
+
+    Each is that of a link about its own joint, as papers and RealAIGym have it. One that is too
+    small for the centre of mass of link 2 moves this centre and masses, without a change of the
+    motion.
+    """
+    rule = "two finite numbers of kg m²"
+    return _params_with(env, None, finite("inertias", rule, inertias, (2,)).tolist())
+
+
+def _params_with(env: Env, *changes: list[float] | None) -> dict[str, Any]:
+    acrobot = acrobot_of(env)
+    changed = dict(_native.params_with(acrobot._native, *changes))
+    return {name: x for name, x in acrobot.parameters.items() if name != "LINK_MOI"} | changed
 
 
 _GYMNASIUM = AcrobotEnv()
@@ -130,11 +159,11 @@ _INPUTS = {
 _OF_STEPS = {"simulate": ("torques",), "tvlqr": ("A", "B")}
 
 
-def acrobot_of(env: Env) -> AcrobotEnv:
+def acrobot_of(env: Env, name: str = "env") -> AcrobotEnv:
     acrobot = _GYMNASIUM if env is None else getattr(env, "unwrapped", env)
     if not isinstance(acrobot, AcrobotEnv):
         rule = "a single environment of acrobot_rs, such as acrobot_rs.AcrobotEnv()"
-        raise must_be("env", rule, repr(env), TypeError)
+        raise must_be(name, rule, repr(env), TypeError)
     return acrobot
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -70,6 +71,12 @@ class Plan:
             knot = [*self.states[step].tolist(), torque, *self.gains[step].tolist()]
         return _native.plan_torque(knot, self.after, _four(state))
 
+    def save(self, path: str | Path) -> None:
+        """Write the plan as a constant of Rust or C: see :func:`acrobot_rs.control.save`."""
+        from acrobot_rs.control.save import save  # which imports this file
+
+        save(path, plan=self)
+
     def _rows(self) -> NDArray[np.float32]:
         return np.column_stack([self.states, self.torques, self.gains])
 
@@ -77,11 +84,13 @@ class Plan:
 class Planner:
     """Plans motions to an equilibrium in ``float32``, for a motor of at most ``max_torque``, N m.
 
-    The acrobot ends upright, or balances with a bent elbow: ``elbow`` is its theta2, rad. ``q`` to
-    ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust, which has the defaults.
-    ``q`` and ``qf`` have the shape ``(4, 4)``, or are the four numbers of a diagonal. No velocity
-    of a plan reaches a bound of the parameters. With ``velocity_clamp`` it may: environments clamp
-    it there.
+    The acrobot ends upright, or balances with a bent elbow: ``elbow`` is its theta2, rad. Or it
+    ends in ``target``, any state in which it stays under a constant torque, such as hanging at
+    rest. ``q`` to ``arrival`` are the weights of what a plan costs: see ``Cost`` in Rust, which has
+    the defaults. ``q`` and ``qf`` have the shape ``(4, 4)``, or are the four numbers of a diagonal;
+    with them, ``torque``, and 0 for ``below`` and ``arrival`` the cost is quadratic. No velocity of
+    a plan reaches a bound of the parameters. With ``velocity_clamp`` it may: environments clamp it
+    there.
     """
 
     def __init__(
@@ -90,6 +99,7 @@ class Planner:
         env: Env = None,
         *,
         elbow: float = 0.0,
+        target: ArrayLike | None = None,
         q: ArrayLike | None = None,
         qf: ArrayLike | None = None,
         angles: tuple[float, float] | None = None,
@@ -117,10 +127,13 @@ class Planner:
         ]
         acrobot, bent = acrobot_of(env), float32("elbow", "a number of rad", elbow)
         clamp = bool(numbers("velocity_clamp", "True or False", velocity_clamp, (), "b"))
-        arguments = _largest(max_torque), bent, clamp, weights
+        end = None if target is None else _four(target, "target")
+        if bent and end:
+            raise must_be("elbow", "0 with a target", elbow)
+        arguments = _largest(max_torque), bent, end, clamp, weights
         self._native = _native.Planner(acrobot._native, *arguments)
-        target, held, moving, resting, reach = self._native.after()
-        self._after = Feedback(target, held, Region(*moving), Region(*resting), reach)
+        end, held, moving, resting, reach = self._native.after()
+        self._after = Feedback(end, held, Region(*moving), Region(*resting), reach)
         self._dt = acrobot.dt
 
     def holds_from(self, state: ArrayLike) -> bool:
@@ -142,16 +155,34 @@ class Planner:
         are 1 to 2^32 - 1 ``tries``. After each 40 of them ``progress`` is called with the number of
         all so far, and Ctrl-C acts. A ``RuntimeError`` says that no try found a plan.
         """
-        steps, tries = integer("steps", steps, 1, 2**16 - 1), integer("tries", tries, 1, 2**32 - 1)
-        seed = integer("seed", seed, 0, math.inf)
-        if not (progress is None or callable(progress)):
-            raise must_be("progress", "a function or None", repr(progress), TypeError)
-        return self._plan(self._native.plan(_four(state), steps, tries, seed, progress))
+        search = _search(steps, tries, seed, progress)
+        return self._plan(self._native.plan(_four(state), *search))
+
+    def plan_each(
+        self,
+        states: ArrayLike,
+        *,
+        steps: int,
+        tries: int = 1000,
+        seed: int = 0,
+        progress: Callable[[int], object] | None = None,
+    ) -> tuple[list[Plan | None], NDArray[np.bool_]]:
+        """Plan from each of many states, ``(n, 4)``. Return plans, and which states have one.
+
+        Each plan is that of :meth:`plan`, with the same arguments, or ``None``; but 16 tries are
+        computed at once, by one core. Ten times a second Ctrl-C acts and ``progress`` is called
+        with the number of states that have a plan, and once more at the end.
+        """
+        search = _search(steps, tries, seed, progress)
+        states = numbers("states", "numbers of shape (n, 4), rad and rad/s", states, None)
+        plans = self._native.plan_each(_each(states, states.size // 4), *search)
+        found = [None if rows is None else self._plan(rows) for rows in plans]
+        return found, np.array([plan is not None for plan in found], np.bool_)
 
     def improve(self, state: ArrayLike, plan: Plan, iterations: int = 150) -> tuple[Plan, float]:
         """Improve a plan, from a state on. Return the new one, and what it costs."""
         iterations = integer("iterations", iterations, 0, 2**32 - 1)
-        rows, cost = self._native.improve(_four(state), _rows("plan", plan), iterations)
+        rows, cost = self._native.improve(_four(state), rows_of("plan", plan), iterations)
         return self._plan(rows), cost
 
     def improve_each(
@@ -160,8 +191,7 @@ class Planner:
         """Improve many plans, each from its state. A cost is infinite where numbers overflow."""
         if not isinstance(plans, Sequence):
             raise must_be("plans", "a list of plans", repr(plans), TypeError)
-        rows, shape = [_rows("plans", plan) for plan in plans], (len(plans), 4)
-        given = float32("states", f"numbers of shape {shape}, rad and rad/s", states, shape)
+        rows, given = [rows_of("plans", plan) for plan in plans], _each(states, len(plans))
         iterations = integer("iterations", iterations, 0, 2**32 - 1)
         rows, costs = self._native.improve_each(given, rows, iterations)
         return [self._plan(each) for each in rows], np.array(costs, np.float32)
@@ -180,15 +210,30 @@ def _weights(name: str, value: Any, rule: str, shape: tuple[int, ...] = ()) -> l
     return np.ravel(np.diag(given) if is_diagonal else given).tolist()
 
 
+def _search(
+    steps: int, tries: int, seed: int, progress: Callable[[int], object] | None
+) -> tuple[Any, ...]:
+    """What a search is given beside states."""
+    if not (progress is None or callable(progress)):
+        raise must_be("progress", "a function or None", repr(progress), TypeError)
+    steps, tries = integer("steps", steps, 1, 2**16 - 1), integer("tries", tries, 1, 2**32 - 1)
+    return steps, tries, integer("seed", seed, 0, math.inf), progress
+
+
+def _each(states: ArrayLike, count: int) -> list[list[float]]:
+    rule = f"numbers of shape ({count}, 4), rad and rad/s"
+    return float32("states", rule, states, (count, 4))
+
+
 def _largest(max_torque: float) -> float:
     return float32("max_torque", "a number of N m above 0", max_torque)
 
 
-def _four(state: ArrayLike) -> list[float]:
-    return float32("state", "four numbers, rad and rad/s", state, (4,))
+def _four(state: ArrayLike, name: str = "state") -> list[float]:
+    return float32(name, "four numbers, rad and rad/s", state, (4,))
 
 
-def _rows(name: str, plan: Plan) -> list[list[float]]:
+def rows_of(name: str, plan: Plan) -> list[list[float]]:
     if not isinstance(plan, Plan):
         raise must_be(name, "a Plan, such as Planner.plan returns", repr(plan), TypeError)
     return float32(name, "a Plan of finite numbers", plan._rows(), (len(plan), 9))
