@@ -347,7 +347,13 @@ fn identification(table: &mut Table) {
     let identified = [all(&found), numbers(&of_both)].concat();
     let calibration = calibrate(&samples, drawn).unwrap();
     let [zero1, zero2] = calibration.zeros;
-    let calibrated = vec![zero1, zero2, calibration.delay, calibration.prediction_error];
+    let calibrated = vec![
+        zero1,
+        zero2,
+        calibration.delay,
+        calibration.prediction_error,
+        calibration.angle_noise,
+    ];
     let calibrated = [calibrated, all(&calibration.fit)].concat();
     let given = json!({
         "params": numbers(&drawn), "angles": flat(&[angles.as_flattened()]), "torques": torques,

@@ -376,6 +376,8 @@ export interface Calibration {
    * of the recording predict the last third, √((length1 + centerOfMass2) / gravity) ahead.
    */
   predictionError: number;
+  /** The standard deviation of the noise of the angles, rad, which encoders add by counting. */
+  angleNoise: number;
 }
 
 /**
