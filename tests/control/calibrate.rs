@@ -91,8 +91,8 @@ fn named(seed: u64) -> [f64; 3] {
     let (report, ratio) = (found.to_string(), found.prediction_error / rounding);
     println!("{report}");
     assert!(report.contains(&format!("rad: {ratio:.0} times the noise")), "{seed}: {report}");
-    assert!(!report.contains("not tell coulomb1"), "{seed}: {report}");
-    assert!(report.contains("not tell damping1, only that it is below 0.0"), "{seed}: {report}");
+    assert!(!report.contains("coulomb1 is not told"), "{seed}: {report}");
+    assert!(report.contains("damping1 is not told, only that it is below 0.0"), "{seed}: {report}");
 
     let [unexplained, wrong] = ["unexplained torque must be at most 3 %", "must be 1"];
     let mass = "mass1 + mass2 must be from 1/30 to 30 times that of the given ones (are torques in";

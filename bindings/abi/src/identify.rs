@@ -131,7 +131,8 @@ pub unsafe extern "C" fn acrobot_fit_params(
 }
 
 /// The parameters of a recording with a sample in each `dt` of `given`, whose lengths should be
-/// about right, too. Tries many windows, and takes those that predict best.
+/// about right, too. Tries many windows, and takes those that predict best. Believes the recording:
+/// acrobot_calibrate finds or names wrong signs, zeros, a delay and lost samples.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_identify(
     samples: *const acrobot_sample_t,

@@ -972,7 +972,8 @@ acrobot_status_t acrobot_fit_params(const acrobot_fit_t *fit, const acrobot_para
     acrobot_params_t *params, acrobot_error_t *error);
 
 // The parameters of a recording with a sample in each `dt` of `given`, whose lengths should be
-// about right, too. Tries many windows, and takes those that predict best.
+// about right, too. Tries many windows, and takes those that predict best. Believes the recording:
+// acrobot_calibrate finds or names wrong signs, zeros, a delay and lost samples.
 acrobot_status_t acrobot_identify(const acrobot_sample_t *samples, size_t count,
     const acrobot_params_t *given, acrobot_params_t *params, acrobot_error_t *error);
 

@@ -263,8 +263,8 @@ def test_a_calibration_is_reported_and_plotted():
     assert found.angle_noise == pytest.approx(1e-3 / 12**0.5, rel=0.03)
     ratio = round(found.prediction_error / found.angle_noise)
     assert f"rad: {ratio} times the noise of the angles." in str(found)
-    assert "not tell coulomb1, only that it is below" in str(found)  # there is none
-    assert "not tell damping1" not in str(found)
+    assert "coulomb1 is not told, only that it is below" in str(found)  # there is none
+    assert "damping1 is not told" not in str(found)
 
     recorded, predicted = np.split(np.array(found.plot(angles, torques).lines), [2])
     for i, line in enumerate(predicted):

@@ -26,8 +26,9 @@ const FINEST: f64 = 1e-3;
 const UNEXPLAINED: f64 = 0.03;
 /// A frame that leaves less is the right one.
 const CERTAIN: f64 = 0.01;
-/// How large a standard error may be, divided by its number: errors are up to 5 times as large.
+/// How large a standard error may be, divided by its number.
 const UNKNOWN: f64 = 0.03;
+/// Errors are up to so many times as large as standard errors.
 const LARGER: f64 = 5.0;
 /// A link whose angle has a smaller range, rad, hardly moved.
 const HARDLY: f64 = 0.2;
@@ -51,7 +52,7 @@ pub struct Calibration {
     /// thirds of the recording predict the last third, T ahead.
     pub prediction_error: f64,
     /// The standard deviation of the noise of the angles, rad, which encoders add by counting. At
-    /// ticks above 5 ms it may be much less.
+    /// ticks above 5 ms this may be several times too large.
     pub angle_noise: f64,
 }
 
@@ -77,7 +78,7 @@ impl fmt::Display for Calibration {
         for (((name, value), error), unit) in numbers.skip(FRICTION) {
             if LARGER * error > value {
                 let most = value + LARGER * error;
-                writeln!(f, "It does not tell {name}, only that it is below {most:.5} {unit}.")?;
+                writeln!(f, "{name} is not told, only that it is below {most:.5} {unit}.")?;
             }
         }
         Ok(())
@@ -118,7 +119,7 @@ impl fmt::Display for Calibration {
 ///
 /// The errors of [`Regression::add`] and of [`Fit::params`]. More than 0.5 % of the samples are
 /// lost, more than 3 % of the torques is unexplained, a number is not known within 3 %, or a link
-/// hardly moved. An angle
+/// hardly moved, by less than 0.2 rad. An angle
 /// or the torque has the wrong sign, or the second angle is not that from link 1. A zero or the
 /// delay is at the end of its range, or torques act before they are recorded. Both links together
 /// have more than 30 times the given masses or less than 1/30 of them, because torques are in

@@ -166,7 +166,8 @@ class Calibration:
     #: thirds predict the last third, for the square root of
     #: ``(LINK_LENGTH_1 + LINK_COM_POS_2) / gravity``.
     prediction_error: float
-    #: The standard deviation of the noise of the angles, rad, which encoders add by counting.
+    #: The standard deviation of the noise of the angles, rad, which encoders add by counting. At
+    #: ``dt`` above 5 ms it may be several times too large.
     angle_noise: float
     report: str  #: all this in words, and what the recording does not tell; ``print`` shows it
 
@@ -174,7 +175,7 @@ class Calibration:
         return self.report
 
     def plot(self, angles: ArrayLike, torques: ArrayLike, axes: Any = None) -> Any:
-        """Plot a recording, and what the parameters predict of each half second of it.
+        """Plot a recording, and how the parameters predict each half second from its first state.
 
         The torques are those of the motor, ``(n,)``. Needs Matplotlib; returns its axes.
         """
@@ -211,6 +212,6 @@ def calibrate(angles: ArrayLike, torques: ArrayLike, env: Env) -> Calibration:
     late. An error says which angle or torque has the wrong sign, that samples are lost, that the
     torques are in another unit, which link hardly moved, and what is not determined.
     """
-    rows = _rows(angles, torques)
-    found, zeros, numbers, report = _native.calibrate(acrobot_of(env)._native, rows)
+    acrobot, rows = acrobot_of(env)._native, _rows(angles, torques)
+    found, zeros, numbers, report = _native.calibrate(acrobot, rows)
     return Calibration(_fit(*found), tuple(zeros), *numbers, report)
