@@ -164,6 +164,8 @@ fn excerpts_are_in_their_files() {
         ("docs/control.md", "```rust,ignore ("),
         ("docs/real.md", "```rust,ignore ("),
         ("docs/embedded.md", "```rust,ignore ("),
+        ("docs/python-firmware.md", "```rust,ignore ("),
+        ("docs/python-firmware.md", "```c ("),
         ("docs/c.md", "```c ("),
         ("docs/c.md", "```cmake ("),
     ] {

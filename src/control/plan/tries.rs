@@ -61,8 +61,8 @@ pub(super) struct Done<'a, S, V> {
 
 /// Improves plans, each by at most so many iterations, in lanes that begin with [`Try::new`].
 /// `next` writes the next plan into a lane, and returns its length and the state in which it
-/// begins, or `None` without another one. `take` returns whether to go on, and so does `go_on`, before
-/// each pass.
+/// begins, or `None` without another one. `take` returns whether to go on, and so does `go_on`,
+/// before each pass.
 #[inline(never)]
 pub(super) fn improve<A: Arithmetic, V: Numbers<A::Scalar>, const LANES: usize>(
     machine: Machine<'_, A>,

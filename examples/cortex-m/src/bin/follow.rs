@@ -1,5 +1,5 @@
-//! Follows a plan that Python has written, without a planner: swings up, and holds upright by a gain
-//! of a regulator, which also comes from there.
+//! Follows a plan that Python has written, without a planner: swings up, and then holds upright by
+//! the gain of a regulator, which also comes from there.
 
 #![no_std]
 #![no_main]

@@ -184,6 +184,9 @@ def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) 
             rule = f"an array of shape (..., {', '.join(map(str, axes))})"
             raise must_be(name, rule, array.shape)
         parts.append(array.reshape(*others, math.prod(axes)))
+    acrobot = acrobot_of(env)._native
+    if all(part.ndim == 1 for part in parts):  # one state: 6 µs, not 9
+        return _native.compute(function, acrobot, np.concatenate(parts)[None]).reshape(shape)
     try:
         others = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
     except ValueError:
@@ -193,4 +196,4 @@ def _call(function: str, shape: tuple[int, ...], env: Env, **inputs: ArrayLike) 
     rows = np.empty((math.prod(others), ends[-1]))
     for part, end in zip(parts, ends):
         rows.reshape(*others, ends[-1])[..., end - part.shape[-1] : end] = part
-    return _native.compute(function, acrobot_of(env)._native, rows).reshape((*others, *shape))
+    return _native.compute(function, acrobot, rows).reshape((*others, *shape))
