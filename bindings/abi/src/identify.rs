@@ -167,8 +167,9 @@ pub struct acrobot_calibration_t {
 /// The zeros of both encoders, the delay and the parameters of a recording with a sample in each
 /// `dt` of `given`, whose lengths should be about right, too. Rejected if more than 0.5 % of the
 /// samples are lost, more than 3 % of the torques is unexplained, a number is not known within 3 %,
-/// a link hardly moved, an angle or the torque has the wrong sign, the second angle is not that from
-/// link 1, a zero is beyond 0.5 rad, or the masses are not within a factor of 30 of those given.
+/// a link hardly moved, an angle or the torque has the wrong sign, the second angle is not that
+/// from link 1, a zero is beyond 0.5 rad, or the masses are not within a factor of 30 of those
+/// given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_calibrate(
     samples: *const acrobot_sample_t,
