@@ -88,7 +88,7 @@ fn named(seed: u64) -> [f64; 3] {
     assert!(found.delay < 0.001 && found.prediction_error < 0.06, "{seed}: {found:?}");
     let rounding = TAU / 4096.0 / 12.0_f64.sqrt(); // its standard deviation, rad
     assert!((found.angle_noise / rounding - 1.0).abs() < 0.1, "{seed}: {found:?}");
-    let (report, ratio) = (found.to_string(), found.prediction_error / rounding);
+    let (report, ratio) = (found.to_string(), found.prediction_error / found.angle_noise);
     println!("{report}");
     assert!(report.contains(&format!("rad: {ratio:.0} times the noise")), "{seed}: {report}");
     assert!(!report.contains("coulomb1 is not told"), "{seed}: {report}");
