@@ -21,6 +21,7 @@ pyo3::import_exception!(gymnasium.error, ResetNeeded);
 
 /// An acrobot of a task, which computes as Gymnasium does in its task.
 #[derive(Clone, Serialize, Deserialize)]
+#[expect(clippy::large_enum_variant, reason = "each environment has one")]
 pub enum One {
     Host(acrobot::Acrobot<Damped<Host>, AnyTask>),
     Portable(acrobot::Acrobot<Damped<Portable>, AnyTask>),
