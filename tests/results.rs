@@ -9,7 +9,7 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Damped, Portable, Real};
 use acrobot::batch::{Autoreset, VecBatch};
 use acrobot::control::estimate::{Noise, ParameterEstimator, ParameterStd};
-use acrobot::control::identify::{Fit, Regression, Sample, calibrate, identify};
+use acrobot::control::identify::{Calibration, Fit, Regression, Sample, calibrate, identify};
 use acrobot::control::model::{Forces, LinearModel, StepModel};
 use acrobot::control::mpc::{Controller, Replanner, Report, Settings};
 use acrobot::control::plan::{Knot, Planner, Problem, SwingUp};
@@ -129,8 +129,9 @@ fn episodes(table: &mut Table) {
             result.extend(results.observations.as_flattened().iter().copied().map(f64::from));
         }
         let given = json!({
-            "task": number, "seed": [u32::MAX, u32::MAX], "draws": rows(draws().params().numbers()), "count": count,
-            "max_steps": limit, "torques": torques, "snapshot": snapshot(&batch),
+            "task": number, "seed": [u32::MAX, u32::MAX],
+            "draws": rows(draws().params().numbers()), "count": count, "max_steps": limit,
+            "torques": torques, "snapshot": snapshot(&batch),
         });
         table.add("batch", given, result);
     }
@@ -346,8 +347,9 @@ fn identification(table: &mut Table) {
     let all = |fit: &Fit| [fit.values, fit.std_errors, fit.weakest].concat();
     let identified = [all(&found), numbers(&of_both)].concat();
     let calibration = calibrate(&samples, drawn).unwrap();
-    let [zero1, zero2] = calibration.zeros;
-    let calibrated = vec![zero1, zero2, calibration.delay, calibration.prediction_error];
+    let Calibration { zeros: [zero1, zero2], delay, prediction_error, angle_noise, .. } =
+        calibration;
+    let calibrated = vec![zero1, zero2, delay, prediction_error, angle_noise];
     let calibrated = [calibrated, all(&calibration.fit)].concat();
     let given = json!({
         "params": numbers(&drawn), "angles": flat(&[angles.as_flattened()]), "torques": torques,

@@ -161,9 +161,11 @@ lines += ["const fn has<T>(last: usize, expected: usize, size: usize) {"]
 lines += ["    assert!(last == expected && size_of::<T>() == size);", "}", "", "const _: () = {"]
 for name, fields in structs.items():
     last, (start, _) = [*fields.items()][-1]
-    line = f"    has::<{name}>(offset_of!({name}, {last}), {start}, {sizes[name][0]});"
-    parts = [f"        offset_of!({name}, {last}),", f"        {start},", f"        {sizes[name][0]},"]
-    lines += [line] if len(line) <= 100 else [f"    has::<{name}>(", *parts, "    );"]
+    parts = f"offset_of!({name}, {last})", start, sizes[name][0]
+    line = f"    has::<{name}>({', '.join(map(str, parts))});"
+    if len(line) > 100:
+        line = "\n".join([f"    has::<{name}>(", *(f"        {x}," for x in parts), "    );"])
+    lines += [line]
 write(f"{ABI}layout.rs", "\n".join([*lines, "};", ""]))
 
 

@@ -86,6 +86,15 @@ fn named(seed: u64) -> [f64; 3] {
     };
     let found = calibrated(&|_| ()).unwrap();
     assert!(found.delay < 0.001 && found.prediction_error < 0.06, "{seed}: {found:?}");
+    let rounding = TAU / 4096.0 / 12.0_f64.sqrt(); // its standard deviation, rad
+    assert!((found.angle_noise / rounding - 1.0).abs() < 0.1, "{seed}: {found:?}");
+    let (report, ratio) = (found.to_string(), found.prediction_error / found.angle_noise);
+    println!("{report}");
+    assert!(report.contains(&format!("rad: {ratio:.0} times the noise")), "{seed}: {report}");
+    assert!(!report.contains("coulomb1 is not told"), "{seed}: {report}");
+    let is_told = found.fit.values[6] >= 5.0 * found.fit.std_errors[6];
+    let untold = report.contains("damping1 is not told, only that it is below 0.0");
+    assert_ne!(is_told, untold, "{seed}: {report}"); // both happen
 
     let [unexplained, wrong] = ["unexplained torque must be at most 3 %", "must be 1"];
     let mass = "mass1 + mass2 must be from 1/30 to 30 times that of the given ones (are torques in";
@@ -113,7 +122,11 @@ fn named(seed: u64) -> [f64; 3] {
         assert!(error.starts_with(expected), "{seed}: {expected}: {error}");
     }
     let dead = calibrated(&|x| x.angles[1] = 0.1).unwrap_err().to_string();
-    assert!(dead.contains(" must be determined by recordings in which both"), "{seed}: {dead}");
+    let expected = "range of angle2 must be at least 0.2 (link 2 hardly moved, or its encoder is";
+    assert!(dead.starts_with(expected), "{seed}: {dead}");
+    let weak = record(&Hardware { limit: 0.5, ..hardware }, 10.0, seed);
+    let weak = calibrate(&weak, drawn(&hardware)).unwrap_err().to_string();
+    assert!(weak.starts_with("range of angle"), "{seed}: {weak}");
 
     // Torques late by so many samples.
     let late = |samples: usize| {

@@ -131,7 +131,8 @@ pub unsafe extern "C" fn acrobot_fit_params(
 }
 
 /// The parameters of a recording with a sample in each `dt` of `given`, whose lengths should be
-/// about right, too. Tries many windows, and takes those that predict best.
+/// about right, too. Tries many windows, and takes those that predict best. Believes the recording:
+/// acrobot_calibrate finds or names wrong signs, zeros, a delay and lost samples.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_identify(
     samples: *const acrobot_sample_t,
@@ -157,6 +158,8 @@ pub struct acrobot_calibration_t {
     /// thirds of the recording predict the last third, √((length1 + center_of_mass2) / gravity)
     /// ahead.
     pub prediction_error: f64,
+    /// The standard deviation of the noise of the angles, rad, which encoders add by counting.
+    pub angle_noise: f64,
     pub fit: acrobot_fit_t,
     pub params: acrobot_params_t,
 }
@@ -164,8 +167,9 @@ pub struct acrobot_calibration_t {
 /// The zeros of both encoders, the delay and the parameters of a recording with a sample in each
 /// `dt` of `given`, whose lengths should be about right, too. Rejected if more than 0.5 % of the
 /// samples are lost, more than 3 % of the torques is unexplained, a number is not known within 3 %,
-/// an angle or the torque has the wrong sign, the second angle is not that from link 1, a zero is
-/// beyond 0.5 rad, or the masses are not within a factor of 30 of those given.
+/// a link hardly moved, an angle or the torque has the wrong sign, the second angle is not that
+/// from link 1, a zero is beyond 0.5 rad, or the masses are not within a factor of 30 of those
+/// given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_calibrate(
     samples: *const acrobot_sample_t,
@@ -176,10 +180,10 @@ pub unsafe extern "C" fn acrobot_calibrate(
 ) -> acrobot_status_t {
     compute(calibration, error, || {
         let samples = samples_of(samples, count)?;
-        let Calibration { params, fit, zeros, delay, prediction_error } =
+        let Calibration { params, fit, zeros, delay, prediction_error, angle_noise } =
             identify::calibrate(&*samples, double(given)?)?;
         let (fit, params) = (fit.into(), single(params)?);
-        Ok(acrobot_calibration_t { zeros, delay, prediction_error, fit, params })
+        Ok(acrobot_calibration_t { zeros, delay, prediction_error, angle_noise, fit, params })
     })
 }
 

@@ -45,7 +45,7 @@ const _: () = {
     has::<acrobot_parameter_std_t>(offset_of!(acrobot_parameter_std_t, torque_factor), 48, 52);
     has::<acrobot_sample_t>(offset_of!(acrobot_sample_t, torques), 16, 32);
     has::<acrobot_fit_t>(offset_of!(acrobot_fit_t, rank_deficiency), 240, 248);
-    has::<acrobot_calibration_t>(offset_of!(acrobot_calibration_t, params), 280, 368);
+    has::<acrobot_calibration_t>(offset_of!(acrobot_calibration_t, params), 288, 376);
     has::<acrobot_settings_t>(offset_of!(acrobot_settings_t, plan_timeout), 104, 108);
     has::<acrobot_report_t>(offset_of!(acrobot_report_t, plan_age), 16, 20);
     has::<acrobot_batch_results_t>(offset_of!(acrobot_batch_results_t, final_observations), 16, 20);

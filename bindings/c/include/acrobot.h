@@ -602,6 +602,8 @@ typedef struct {
   // thirds of the recording predict the last third, √((length1 + center_of_mass2) / gravity)
   // ahead.
   double prediction_error;
+  // The standard deviation of the noise of the angles, rad, which encoders add by counting.
+  double angle_noise;
   acrobot_fit_t fit;
   acrobot_params_t params;
 } acrobot_calibration_t;
@@ -970,15 +972,17 @@ acrobot_status_t acrobot_fit_params(const acrobot_fit_t *fit, const acrobot_para
     acrobot_params_t *params, acrobot_error_t *error);
 
 // The parameters of a recording with a sample in each `dt` of `given`, whose lengths should be
-// about right, too. Tries many windows, and takes those that predict best.
+// about right, too. Tries many windows, and takes those that predict best. Believes the recording:
+// acrobot_calibrate finds or names wrong signs, zeros, a delay and lost samples.
 acrobot_status_t acrobot_identify(const acrobot_sample_t *samples, size_t count,
     const acrobot_params_t *given, acrobot_params_t *params, acrobot_error_t *error);
 
 // The zeros of both encoders, the delay and the parameters of a recording with a sample in each
 // `dt` of `given`, whose lengths should be about right, too. Rejected if more than 0.5 % of the
 // samples are lost, more than 3 % of the torques is unexplained, a number is not known within 3 %,
-// an angle or the torque has the wrong sign, the second angle is not that from link 1, a zero is
-// beyond 0.5 rad, or the masses are not within a factor of 30 of those given.
+// a link hardly moved, an angle or the torque has the wrong sign, the second angle is not that
+// from link 1, a zero is beyond 0.5 rad, or the masses are not within a factor of 30 of those
+// given.
 acrobot_status_t acrobot_calibrate(const acrobot_sample_t *samples, size_t count,
     const acrobot_params_t *given, acrobot_calibration_t *calibration, acrobot_error_t *error);
 

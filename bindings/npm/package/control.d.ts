@@ -357,7 +357,10 @@ export function fitParams(
   fit: Readonly<Fit>, params: Readonly<Partial<Params>>,
 ): Readonly<Params>;
 
-/** The parameters of a machine whose lengths and `dt` are given. */
+/**
+ * The parameters of a machine whose lengths and `dt` are given. Believes the recording: `calibrate`
+ * finds or names wrong signs, zeros, a delay and lost samples.
+ */
 export function identify(
   recording: Readonly<Recording>, params: Readonly<Partial<Params>>,
 ): Readonly<Params>;
@@ -376,6 +379,8 @@ export interface Calibration {
    * of the recording predict the last third, √((length1 + centerOfMass2) / gravity) ahead.
    */
   predictionError: number;
+  /** The standard deviation of the noise of the angles, rad, which encoders add by counting. */
+  angleNoise: number;
 }
 
 /**

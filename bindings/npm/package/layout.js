@@ -85,7 +85,8 @@ export const STRUCTS = {
     values: [0, 20], stdErrors: [20, 20], weakest: [40, 20], rankDeficiency: [60, 1],
   },
   acrobot_calibration_t: {
-    zeros: [0, 4], delay: [4, 2], predictionError: [6, 2], fit: [8, 62], params: [70, 22],
+    zeros: [0, 4], delay: [4, 2], predictionError: [6, 2], angleNoise: [8, 2], fit: [10, 62],
+    params: [72, 22],
   },
   acrobot_settings_t: {
     params: [0, 22], limit: [22, 1], counts: [23, 2], delay: [25, 1], planTimeout: [26, 1],

@@ -165,9 +165,9 @@ export function calibrate(recording, params) {
   const words = empty(CALIBRATION);
   call({ ...changes, ...given }, "acrobot_calibrate", samples, count, machine(changes), words);
   const part = ([at, length]) => words.slice(at, at + length);
-  const [zero1, zero2, delay, predictionError] = new Float64Array(words.buffer);
+  const [zero1, zero2, delay, predictionError, angleNoise] = new Float64Array(words.buffer);
   const [fit, found] = [fitOf(part(CALIBRATION.fit)), unpack(part(CALIBRATION.params), PARAMS)];
-  return { params: found, fit, zeros: [zero1, zero2], delay, predictionError };
+  return { params: found, fit, zeros: [zero1, zero2], delay, predictionError, angleNoise };
 }
 
 export function predictionError(params, recording, horizon) {

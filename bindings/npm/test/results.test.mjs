@@ -150,8 +150,9 @@ const CALLS = {
     const { rankDeficiency, ...arrays } = regression.fit();
     assert.deepEqual([flat(...Object.values(arrays)), rankDeficiency], [fit, 0]);
     const calibration = control.calibrate({ angles, torques }, drawn);
-    const { zeros, delay, predictionError, fit: { rankDeficiency: _, ...own } } = calibration;
-    const numbers = flat([...zeros, delay, predictionError], ...Object.values(own));
+    const { zeros, delay, predictionError, angleNoise } = calibration;
+    const { rankDeficiency: _, ...own } = calibration.fit;
+    const numbers = flat([...zeros, delay, predictionError, angleNoise], ...Object.values(own));
     assert.deepEqual(numbers, calibrated);
     const all = [found, control.fitParams(regression.fit(), drawn), calibration.params];
     return all.flatMap(numbersOf);

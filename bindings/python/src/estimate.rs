@@ -113,16 +113,18 @@ pub fn identify(acrobot: &Bound<'_, Acrobot>, recordings: Vec<Vec<[f64; 4]>>) ->
     Ok(found(&params, fit))
 }
 
-/// Of one recording also the zeros, the delay and the error of the prediction.
+/// Of one recording also the zeros, the delay, the error of the prediction, the noise of the angles
+/// and the report.
 #[pyfunction]
 pub fn calibrate(
     acrobot: &Bound<'_, Acrobot>,
     recording: Vec<[f64; 4]>,
-) -> PyResult<(Found, [f64; 2], f64, f64)> {
+) -> PyResult<(Found, [f64; 2], [f64; 3], String)> {
     let given = alone(acrobot)?.acrobot.params();
-    let Calibration { params, fit, zeros, delay, prediction_error } =
-        control::identify::calibrate(&samples(recording), given).map_err(rejected)?;
-    Ok((found(&params, fit), zeros, delay, prediction_error))
+    let calibration = control::identify::calibrate(&samples(recording), given).map_err(rejected)?;
+    let report = calibration.to_string();
+    let Calibration { params, fit, zeros, delay, prediction_error, angle_noise } = calibration;
+    Ok((found(&params, fit), zeros, [delay, prediction_error, angle_noise], report))
 }
 
 /// Names and what they stand for.

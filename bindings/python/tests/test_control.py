@@ -283,6 +283,28 @@ def test_what_is_found_is_saved_for_firmware(tmp_path):
         control.save("x", gain=REST)
 
 
+def test_a_calibration_is_reported_and_plotted():
+    env = acrobot_rs.AcrobotSwingupEnv(dt=0.01)
+    torques = np.repeat(np.random.default_rng(0).uniform(-2.0, 2.0, 80), 25)
+    late = np.concatenate([np.zeros(3), torques[:-3]])
+    angles = np.unwrap(control.simulate([0, 0, 0, 0], late, env)[:-1, :2], axis=0)
+    angles = np.round((angles + [0.1, -0.2]) / 1e-3) * 1e-3
+    found = control.calibrate(angles, torques, env)
+    assert found.angle_noise == pytest.approx(1e-3 / 12**0.5, rel=0.03)
+    ratio = round(found.prediction_error / found.angle_noise)
+    assert f"rad: {ratio} times the noise of the angles." in str(found)
+    assert "coulomb1 is not told, only that it is below" in str(found)  # there is none
+    assert "damping1 is not told" not in str(found)
+
+    recorded, predicted = np.split(np.array(found.plot(angles, torques).lines), [2])
+    for i, line in enumerate(predicted):
+        expected = np.interp(line.get_xdata(), *recorded[i % 2].get_data())
+        assert_allclose(line.get_ydata(), expected, atol=0.05)
+    assert len(predicted) == 2 * 40  # half seconds
+    with pytest.raises(ValueError, match="torques must be finite numbers of N m"):
+        found.plot(angles, np.zeros((len(angles), 2)))
+
+
 def test_a_clamped_velocity_is_said():
     env = acrobot_rs.AcrobotEnv(dt=0.05, MAX_VEL_2=3.0)
     with pytest.warns(UserWarning, match=r"at its bound, .*: MAX_VEL_2=3.0000 rad/s") as caught:

@@ -1,8 +1,10 @@
 """The Python code of the documentation runs, and prints what its comments say."""
 
+import json
 import re
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -30,6 +32,25 @@ def test_code_runs_and_prints_what_its_comments_say(name, capsys, tmp_path, monk
         for committed in ("examples/cortex-m/src/plan.rs", "bindings/c/firmware/plan.h"):
             written = (tmp_path / Path(committed).name).read_bytes()
             assert written == (ROOT / committed).read_bytes(), committed
+
+
+def test_the_course_prints_and_draws_what_is_committed(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    course = ROOT / "docs/course.ipynb"
+    text = course.read_text()
+    assert len(text) < 600_000
+    for link in re.findall(r"\]\(([\w-]+\.md)", text):
+        assert (course.parent / link).exists(), link
+    cells = [cell for cell in json.loads(text)["cells"] if cell["cell_type"] == "code"]
+    assert cells
+    session = {}
+    for cell in cells:
+        plt.close("all")
+        exec(compile("".join(cell["source"]), course, "exec"), session)
+        printed = ["".join(output.get("text", [])) for output in cell["outputs"]]
+        assert capsys.readouterr().out == "".join(printed)
+        pictures = ["image/png" in output.get("data", {}) for output in cell["outputs"]]
+        assert sum(pictures) == len(plt.get_fignums())
 
 
 def test_parameters_are_written_in_the_order_of_the_header():

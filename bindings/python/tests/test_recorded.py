@@ -138,6 +138,7 @@ def identify(row, env):
     found = control.identify(angles, torques, env)
     row["result"] = row["calibrated"] + row["identified"]
     numbers = [*calibrated.zeros, calibrated.delay, calibrated.prediction_error]
+    numbers.append(calibrated.angle_noise)
     parts = [
         each
         for fit in (calibrated.fit, found)

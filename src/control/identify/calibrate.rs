@@ -1,7 +1,9 @@
 //! Calibrates a machine from a recording: the zeros of its encoders, its delay and its parameters.
 
-use super::recording::{Correction, Sample};
-use super::regression::{FRICTION, Fit, Regression};
+use core::fmt;
+
+use super::recording::{Correction, Sample, angle_noise};
+use super::regression::{FRICTION, Fit, Regression, UNITS};
 use super::windows::{corrected_prediction_error, in_steps};
 use crate::error::Error;
 use crate::physics::Params;
@@ -24,8 +26,12 @@ const FINEST: f64 = 1e-3;
 const UNEXPLAINED: f64 = 0.03;
 /// A frame that leaves less is the right one.
 const CERTAIN: f64 = 0.01;
-/// How large a standard error may be, divided by its number: errors are up to 5 times as large.
+/// How large a standard error may be, divided by its number.
 const UNKNOWN: f64 = 0.03;
+/// Errors are up to so many times as large as standard errors.
+const LARGER: f64 = 5.0;
+/// A link whose angle has a smaller range, rad, hardly moved.
+const HARDLY: f64 = 0.2;
 /// How many samples may be lost: with 0.5 % masses are up to 4 % wrong.
 const LOST: f64 = 0.005;
 /// In another unit, such as mN m or N cm, torques make masses at least 100 times too large.
@@ -45,6 +51,38 @@ pub struct Calibration {
     /// The root of the mean square of the errors of angles, rad, if parameters of the first two
     /// thirds of the recording predict the last third, T ahead.
     pub prediction_error: f64,
+    /// The standard deviation of the noise of the angles, rad, which encoders add by counting. At
+    /// ticks above 5 ms this may be several times too large.
+    pub angle_noise: f64,
+}
+
+/// A report in words: each number, how well it predicts, and what the recording does not tell.
+impl fmt::Display for Calibration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { params, fit, zeros: [zero1, zero2], delay, prediction_error, angle_noise } =
+            self;
+        let numbers = Fit::NAMES.into_iter().zip(fit.values).zip(fit.std_errors).zip(UNITS);
+        for (((name, value), error), unit) in numbers.clone() {
+            writeln!(f, "{name:8} {value:9.5} ± {error:.5} {unit}")?;
+        }
+        writeln!(f, "zeros    {zero1:9.5} {zero2:9.5} rad")?;
+        writeln!(f, "delay    {delay:9.5} s")?;
+        if *prediction_error > 0.0 {
+            let ahead = in_steps(params, AHEAD) as f64 * params.dt;
+            let ratio = prediction_error / angle_noise;
+            writeln!(f, "The first two thirds predict the last third, {ahead:.1} s ahead, within")?;
+            writeln!(f, "{prediction_error:.5} rad: {ratio:.0} times the noise of the angles.")?;
+        } else {
+            writeln!(f, "The recording is too short to tell how well it predicts.")?;
+        }
+        for (((name, value), error), unit) in numbers.skip(FRICTION) {
+            if LARGER * error > value {
+                let most = value + LARGER * error;
+                writeln!(f, "{name} is not told, only that it is below {most:.5} {unit}.")?;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Calibrates a machine from a recording with a sample in each `dt` of `given`, under its gravity.
@@ -80,7 +118,8 @@ pub struct Calibration {
 /// # Errors
 ///
 /// The errors of [`Regression::add`] and of [`Fit::params`]. More than 0.5 % of the samples are
-/// lost, more than 3 % of the torques is unexplained, or a number is not known within 3 %. An angle
+/// lost, more than 3 % of the torques is unexplained, a number is not known within 3 %, or a link
+/// hardly moved, by less than 0.2 rad. An angle
 /// or the torque has the wrong sign, or the second angle is not that from link 1. A zero or the
 /// delay is at the end of its range, or torques act before they are recorded. Both links together
 /// have more than 30 times the given masses or less than 1/30 of them, because torques are in
@@ -99,6 +138,7 @@ pub fn calibrate(recording: &[Sample], given: Params) -> Result<Calibration, Err
     let regression = regress(recording, &given, &correction)?;
     let fit = regression.fit();
     if fit.rank_deficiency > 0 {
+        moved(recording)?;
         fit.params(given)?;
     }
     let lost = lost(recording);
@@ -106,7 +146,10 @@ pub fn calibrate(recording: &[Sample], given: Params) -> Result<Calibration, Err
         let rule = "at most 0.5 (both angles turn twice as far as before and after), in";
         return out_of_range("lost samples", 100.0 * lost, "%", rule);
     }
-    check(&correction, least, &regression.fit_free([true; _]), given.dt)?;
+    if let Err(error) = check(&correction, least, &regression.fit_free([true; _]), given.dt) {
+        moved(recording)?;
+        return Err(error);
+    }
     let (first, last) =
         recording.split_at_checked(recording.len() / 3 * 2).unwrap_or((recording, &[]));
     let of_first = regress(first, &given, &correction)?.fit().params(given)?;
@@ -124,6 +167,7 @@ pub fn calibrate(recording: &[Sample], given: Params) -> Result<Calibration, Err
         zeros: correction.zeros,
         delay: correction.delay.max(0.0) * given.dt,
         prediction_error: corrected_prediction_error(of_first, last, ahead, &correction)?,
+        angle_noise: angle_noise(recording),
     })
 }
 
@@ -206,6 +250,23 @@ fn lost(samples: &[Sample]) -> f64 {
         }
     }
     if fast > 0.0 { doubled / fast } else { 0.0 }
+}
+
+/// Checks that both links moved. A recording without samples has no range.
+fn moved(recording: &[Sample]) -> Result<(), Error> {
+    let rules = [
+        ("range of angle1", "at least 0.2 (link 1 hardly moved, or its encoder is dead), in"),
+        ("range of angle2", "at least 0.2 (link 2 hardly moved, or its encoder is dead), in"),
+    ];
+    for (i, (name, rule)) in rules.into_iter().enumerate() {
+        let angles = recording.iter().filter_map(|sample| sample.angles.get(i).copied());
+        let most = angles.clone().fold(f64::NEG_INFINITY, f64::max);
+        let range = most - angles.fold(f64::INFINITY, f64::min);
+        if (0.0..HARDLY).contains(&range) {
+            return out_of_range(name, range, "rad", rule);
+        }
+    }
+    Ok(())
 }
 
 fn out_of_range<T>(

@@ -1,5 +1,7 @@
 //! Recordings, and how the motion of a machine follows from them.
 
+use crate::math::Real;
+
 /// A sample of a recording.
 ///
 /// ```
@@ -17,6 +19,24 @@ pub struct Sample {
     pub angles: [f64; 2],
     /// The torques on θ1 and θ2 from this sample to the next, N m. An acrobot's first is 0.
     pub torques: [f64; 2],
+}
+
+/// The standard deviation of the noise of both angles, rad: encoders count whole numbers. From the
+/// fourth differences, in which a smooth motion vanishes.
+pub(super) fn angle_noise(samples: &[Sample]) -> f64 {
+    let (mut squares, mut count) = (0.0, 0.0);
+    for window in samples.windows(5) {
+        let mut differences = [0.0; 2];
+        for (sample, weight) in window.iter().zip([1.0, -4.0, 6.0, -4.0, 1.0]) {
+            let [angle1, angle2] = sample.angles;
+            differences[0] += weight * angle1;
+            differences[1] += weight * angle2;
+        }
+        let [x, y] = differences;
+        squares += (x * x + y * y) / 70.0; // the sum of the weights' squares
+        count += 2.0;
+    }
+    if count > 0.0 { Real::sqrt(squares / count) } else { 0.0 }
 }
 
 /// What is wrong with a recording.

@@ -16,8 +16,9 @@ use crate::physics::{Params, WIDTH};
 const N: usize = 10;
 /// Those from here on are friction.
 pub(super) const FRICTION: usize = 6;
-/// The units of those before.
-const UNITS: [&str; FRICTION] = ["kg m²", "kg m²", "kg m²", "kg m", "kg m", "kg m²"];
+/// Their units.
+pub(super) const UNITS: [&str; N] =
+    ["kg m²", "kg m²", "kg m²", "kg m", "kg m", "kg m²", "N m s/rad", "N m s/rad", "N m", "N m"];
 /// Eigenvalues below this part of the largest diagonal element count as 0: the rank lacks them.
 const SINGULAR: f64 = 1e-10;
 
@@ -294,8 +295,8 @@ impl Fit {
     ///
     /// No machine has these numbers, or the recordings do not determine one that is not a friction.
     pub fn params(&self, given: Params) -> Result<Params, Error> {
-        let determined = Self::NAMES.into_iter().zip(self.values).zip(self.std_errors).zip(UNITS);
-        for (((name, value), error), unit) in determined {
+        let numbers = Self::NAMES.into_iter().zip(self.values).zip(self.std_errors).zip(UNITS);
+        for (((name, value), error), unit) in numbers.take(FRICTION) {
             if error == f64::INFINITY {
                 let rule = "determined by recordings in which both links move long enough, in";
                 return Err(Error::OutOfRange { name, value, unit, rule });

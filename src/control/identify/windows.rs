@@ -27,6 +27,10 @@ const FIRST: (usize, f64) = (3, 0.03);
 /// of about T to 2.3 T are tried on the first three quarters of each recording. Those count that
 /// predict the last quarters best, 3.7 T ahead. A recording of less than 15 T has no such quarter.
 ///
+/// It believes the recordings. A wrong sign, a zero that is off, an absolute θ2, a torque that acts
+/// late or is in another unit, and lost samples give wrong numbers without an error:
+/// [`calibrate`](super::calibrate()) finds or names them.
+///
 /// ```
 /// # use acrobot::control::identify::{Sample, identify};
 /// # use acrobot::{Params, Portable, State, arithmetic::Damped, physics::Pendulum};

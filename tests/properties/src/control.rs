@@ -119,9 +119,9 @@ fn no_recording_gives_nan() {
 }
 
 fn assert_finite(result: Result<Calibration, Error>) {
-    if let Ok(Calibration { params, fit, zeros, delay, prediction_error }) = result {
+    if let Ok(Calibration { params, fit, zeros, delay, prediction_error, angle_noise }) = result {
         params.validate().unwrap();
-        let numbers = [&zeros[..], &[delay, prediction_error], &fit.values].concat();
+        let numbers = [&zeros[..], &[delay, prediction_error, angle_noise], &fit.values].concat();
         assert!(numbers.iter().all(|x| x.is_finite()));
     }
 }

@@ -50,7 +50,10 @@ fn files_are_checked() {
         ("1,2,3\n", "bad.csv must begin with the line count1,count2,torque"),
         ("count1,count2,torque\n1,2,3\n1,2\n", "bad.csv:3: not three numbers: 1,2"),
         ("count1,count2,torque\n1,2,900\n", "in N m and at most the limit of 6, got 900"),
-        ("count1,count2,torque\n1,2,3\n", "mass11 must be determined by recordings in which"),
+        (
+            "count1,count2,torque\n1,2,3\n",
+            "range of angle1 must be at least 0.2 (link 1 hardly moved",
+        ),
     ] {
         fs::write(folder.0.join("bad.csv"), csv).unwrap();
         let output = folder.rig(&["identify", "drawn.toml", "bad.csv", "out.toml"]);

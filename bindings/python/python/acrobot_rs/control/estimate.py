@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 
 from acrobot_rs import _native
 from acrobot_rs.arrays import finite, independent, must_be
-from acrobot_rs.control.model import Env, Floats, acrobot_of
+from acrobot_rs.control.model import Env, Floats, acrobot_of, simulate
 from acrobot_rs.control.save import save
+from acrobot_rs.env import AcrobotEnv
 
 #: The parameters that an estimator can find, in the order of the native part: derive.py writes
 #: them.
@@ -127,6 +128,10 @@ def identify(angles: Sequence[ArrayLike], torques: Sequence[ArrayLike], env: Env
     A recording has angles, ``(n, 2)``, rad, without jumps by whole turns, and the motor's torques,
     ``(n,)``, N m, or those of both joints, ``(n, 2)``, each until the next sample. ``env`` has
     ``dt``, gravity and the centres of mass; its lengths should be about right.
+
+    It believes the recording. A wrong sign, a zero that is off, an absolute theta2, a torque that
+    acts late or is in another unit, and lost rows give wrong numbers without an error:
+    :func:`calibrate` finds or names them.
     """
     for name, given in (("angles", angles), ("torques", torques)):
         if not (isinstance(given, Sequence | np.ndarray) and len(given) == len(angles)):
@@ -161,6 +166,43 @@ class Calibration:
     #: thirds predict the last third, for the square root of
     #: ``(LINK_LENGTH_1 + LINK_COM_POS_2) / gravity``.
     prediction_error: float
+    #: The standard deviation of the noise of the angles, rad, which encoders add by counting. At
+    #: ``dt`` above 5 ms it may be several times too large.
+    angle_noise: float
+    report: str  #: all this in words, and what the recording does not tell; ``print`` shows it
+
+    def __str__(self) -> str:
+        return self.report
+
+    def plot(self, angles: ArrayLike, torques: ArrayLike, axes: Any = None) -> Any:
+        """Plot a recording, and how the parameters predict each half second from its first state.
+
+        The torques are those of the motor, ``(n,)``. Needs Matplotlib; returns its axes.
+        """
+        import matplotlib.pyplot as plt
+
+        axes = plt.gca() if axes is None else axes
+        rule = "finite numbers of N m, of shape (n,), as many as angles"
+        torques = finite("torques", rule, torques, np.shape(angles)[:1])
+        recorded = np.array(_rows(angles, torques))[:, :2] - self.zeros
+        free = {"MAX_VEL_1": np.inf, "MAX_VEL_2": np.inf}  # a machine has no bounds
+        env = AcrobotEnv(**{**self.fit.params, **free})
+        times = env.dt * np.arange(len(recorded))
+        acting = np.interp(times - self.delay, times, torques)
+        for i, line in enumerate(axes.plot(times, recorded)):
+            line.set_label(f"theta{i + 1}, recorded")
+        half, length = max(3, round(0.01 / env.dt)), round(0.5 / env.dt)
+        around = np.arange(-half, half + 1)
+        for start in range(half, len(recorded) - half, length):
+            *_, velocity, angle = np.polyfit(env.dt * around, recorded[start + around], 3)
+            part = slice(start, start + length)
+            states = simulate([*angle, *velocity], acting[part], env)[:-1]
+            predicted = np.unwrap(states[:, :2], axis=0)
+            lines = axes.plot(times[part], predicted, "k--", linewidth=1)
+        lines[0].set_label("predicted")
+        axes.set(xlabel="time, s", ylabel="angle, rad")
+        axes.legend()
+        return axes
 
 
 def calibrate(angles: ArrayLike, torques: ArrayLike, env: Env) -> Calibration:
@@ -168,7 +210,8 @@ def calibrate(angles: ArrayLike, torques: ArrayLike, env: Env) -> Calibration:
 
     As :func:`identify`, for angles whose zeros are unknown, up to 0.5 rad, and a torque that acts
     late. An error says which angle or torque has the wrong sign, that samples are lost, that the
-    torques are in another unit, and what is not determined.
+    torques are in another unit, which link hardly moved, and what is not determined.
     """
-    found, zeros, *numbers = _native.calibrate(acrobot_of(env)._native, _rows(angles, torques))
-    return Calibration(_fit(*found), tuple(zeros), *numbers)
+    acrobot, rows = acrobot_of(env)._native, _rows(angles, torques)
+    found, zeros, numbers, report = _native.calibrate(acrobot, rows)
+    return Calibration(_fit(*found), tuple(zeros), *numbers, report)

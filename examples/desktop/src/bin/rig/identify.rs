@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use acrobot::control::identify::{Calibration, Fit, Sample, calibrate};
+use acrobot::control::identify::{Sample, calibrate};
 use acrobot::control::mpc::Settings;
 use anyhow::{Context, bail};
 use desktop::write;
@@ -43,17 +43,12 @@ pub fn identify(drawn: Rig, recording: &Path, out: &Path) -> anyhow::Result<()> 
         bail!("torques must be in N m and at most the limit of {limit}, got {torque}");
     }
     let samples: Vec<Sample> = rows.into_iter().map(sample).collect();
-    let Calibration { params, fit, zeros, delay, prediction_error } =
-        calibrate(&samples, drawn.params()?)
-            .with_context(|| format!("{} identifies no machine", recording.display()))?;
-    let mut rig = drawn.with_params(params);
-    rig.zeros = [0, 1].map(|i| (zeros[i] / turns[i]).round() as i32);
-    rig.delay = delay as f32;
-    for ((name, value), error) in Fit::NAMES.iter().zip(fit.values).zip(fit.std_errors) {
-        println!("{name:8} {value:9.5} ± {error:.5}");
-    }
-    println!("zeros    {:?} counts\ndelay    {delay:9.5} s", rig.zeros);
-    println!("prediction_error {prediction_error:.5} rad");
+    let found = calibrate(&samples, drawn.params()?)
+        .with_context(|| format!("{} identifies no machine", recording.display()))?;
+    let mut rig = drawn.with_params(found.params);
+    rig.zeros = [0, 1].map(|i| (found.zeros[i] / turns[i]).round() as i32);
+    rig.delay = found.delay as f32;
+    println!("{found}The zeros are {:?} counts.", rig.zeros);
     write(out, toml::to_string(&rig)?)?;
     let [rust, c] = code(&rig.settings()?, rig.zeros);
     write(&out.with_extension("rs"), rust)?;
