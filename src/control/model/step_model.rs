@@ -59,8 +59,17 @@ impl<A: Arithmetic> Pendulum<A> {
         self.linearize_step_within(torque, bounds)
     }
 
+    /// As [`linearize_step`](Self::linearize_step), where no bound clamps, as at an equilibrium.
+    pub(in crate::control) fn linearize_free_step(
+        &self,
+        torque: A::Scalar,
+    ) -> Result<StepModel<A::Scalar>, Error> {
+        self.linearize_step_within(torque, [A::Scalar::ZERO; 2])
+    }
+
     /// As [`linearize_step`](Self::linearize_step), given [`by_bounds`].
-    pub(in crate::control) fn linearize_step_within(
+    #[inline(never)] // saves flash
+    fn linearize_step_within(
         &self,
         torque: A::Scalar,
         bounds: [A::Scalar; 2],

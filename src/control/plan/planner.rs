@@ -250,7 +250,7 @@ impl<A: Arithmetic> Planner<A> {
             *knot = Knot { state: knot.state, ..Knot::open(knot.torque) };
             model.set_state(knot.state)?;
             // Of the equations, which the plan was found with: none is clamped.
-            let model = model.linearize_step_within(knot.torque, [A::Scalar::ZERO; 2])?;
+            let model = model.linearize_free_step(knot.torque)?;
             knot.gain = back_up(&model, &q, *r, &mut cost)?;
         }
         Ok(())

@@ -121,7 +121,7 @@ impl<A: Arithmetic> BoundedRegulator<A> {
         (params.coulomb1, params.coulomb2) = (none, none);
         let free = Pendulum::<A>::new(params, target)?;
         let far = f64::INFINITY;
-        let design = Design::new(&free.linearize_step(torque)?, units, [LINEAR, far, far, far])?;
+        let design = Design::new(&free.linearize_free_step(torque)?, units, [LINEAR, far, far, far])?;
         if design.roughness(PI, params.dt) > if is_dry { ROUGH_DRY } else { ROUGH } {
             let rule = "longer for this scalar, which loses small velocities upright, in";
             let value = params.dt.to_f64();
@@ -156,7 +156,7 @@ impl<A: Arithmetic> BoundedRegulator<A> {
     #[inline(never)]
     fn rest(&mut self, units: Units) {
         let Feedback { target, torque, moving, .. } = self.feedback;
-        let Ok(model) = self.machine.linearize_step(torque) else { return };
+        let Ok(model) = self.machine.linearize_free_step(torque) else { return };
         let width = self.machine.model().constants.inverse_width.to_f64();
         let slow = SLOW * units.time / width;
         let Ok(design) = Design::new(&model, units, [LINEAR, f64::INFINITY, slow, slow]) else {

@@ -27,7 +27,7 @@ impl<A: Arithmetic> Pendulum<A> {
         q: &[[A::Scalar; 4]; 4],
         r: A::Scalar,
     ) -> Result<Lqr<A::Scalar>, Error> {
-        let model = self.linearize_step(torque)?;
+        let model = self.linearize_free_step(torque)?;
         check_equilibrium(self, torque)?;
         dlqr(&model, q, r)
     }
