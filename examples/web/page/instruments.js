@@ -82,7 +82,7 @@ export class Instruments {
     }
   }
 
-  /** The state in which the next torque acts: after the levels on their way, and the motor's lag. */
+  /** The state in which the next torque acts: after levels on their way, and the lag. */
   #ahead(game) {
     const { motorLag, dt } = game.params;
     const lag = Math.min(Math.round(motorLag / dt), STEPS);

@@ -313,7 +313,8 @@ function start() {
     play();
   };
   // After a click. Who uses the keyboard may go on with ↑ and ↓.
-  const leaves = ({ target }) => target.matches("select:not(:focus-visible)") && target.blur();
+  const left = ":is(select, [type=checkbox]):not(:focus-visible)";
+  const leaves = ({ target }) => target.matches(left) && target.blur();
   $("app").addEventListener("change", leaves);
 
   // ---- settings

@@ -1,5 +1,5 @@
-// The panels of the machine and its instruments: a choice of equations, and a slider and a field for
-// each parameter. The field shows why a value is rejected.
+// The panels of the machine and its faults: a choice of equations, and a slider and a field for each
+// parameter. The field shows why a value is rejected.
 
 import { minus } from "./plot.js";
 import {

@@ -14,7 +14,8 @@ const TABLES = {
     ["mass1", "Mass of link 1", "kg", 1, 4, 0.05],
     ["mass2", "Mass of link 2", "kg", 1, 4, 0.05],
     ["length1", "Length of link 1", "m", 1, 3, 0.05, "Its centre of mass stays."],
-    ["length2", "Length of link 2", "m", 1, 3, 0.05, "Changes only the picture and the tip height."],
+    ["length2", "Length of link 2", "m", 1, 3, 0.05,
+      "Changes only the picture and the tip height."],
     ["gravity", "Gravity", "m/s²", 9.8, 25, 0.1, "", 0],
     ["friction", "Friction of both joints", "N m s/rad", 0, 1, 0.01, "", 0],
   ],
@@ -60,7 +61,10 @@ export const DEFAULTS = { ...GYMNASIUM, ...IDEAL };
 export const BALANCE = { ...GYMNASIUM, dt: 0.02, torque: 5 };
 
 const UNBOUNDED = { maxVelocity1: Infinity, maxVelocity2: Infinity };
-/** Machines by name, without instruments: that of dm_control, and RealAIGym's design C.1 without dry friction. */
+/**
+ * Machines by name, without instruments: that of dm_control, and RealAIGym's design C.1 without dry
+ * friction.
+ */
 export const MACHINES = {
   "Gymnasium": GYMNASIUM,
   "Gymnasium, 5 N m": BALANCE,
