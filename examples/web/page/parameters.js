@@ -2,9 +2,7 @@
 // parameter. The field shows why a value is rejected.
 
 import { minus } from "./plot.js";
-import {
-  FAULTY, IDEAL, MACHINES, PARAMETERS, PLACES, machineOf, parseNumber, textOf,
-} from "./settings.js";
+import { FAULTY, IDEAL, MACHINES, PARAMETERS, machineOf, parseNumber, textOf } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -27,9 +25,7 @@ export function parametersPanel(get, take) {
     take(params);
     showMachine();
   };
-  const placeOf = (name) =>
-    $(Object.keys(PLACES).find((id) => PLACES[id].some((each) => each.name === name)));
-  const fields = PARAMETERS.map(({ name, label, unit, start, end, step, hint }) => {
+  const fields = PARAMETERS.map(({ place, name, label, unit, start, end, step, hint }) => {
     const field = document.createElement("div");
     field.className = "field parameter";
     const described = `aria-describedby="${name}-hint ${name}-reason"`;
@@ -41,7 +37,7 @@ export function parametersPanel(get, take) {
       <span class="hint">${unit}</span>
       <p id="${name}-reason" class="reason" role="alert"></p>
       <p id="${name}-hint" class="hint">${hint}</p>`;
-    placeOf(name).append(field);
+    $(place).append(field);
     const [slider, text] = field.querySelectorAll("input");
     const reason = field.querySelector(".reason");
     const change = () => {

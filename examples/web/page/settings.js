@@ -37,24 +37,22 @@ const TABLES = {
     ["angleNoise", "Noise of the encoders", "rad", 0, 0.01, 0.0005, "A standard deviation.", 0],
   ],
 };
-const toParameter = ([name, label, unit, value, end, step, hint = "", start = step]) => {
-  return { name, label, unit, value, end, step, hint, start };
-};
-const valuesOf = (parameters) =>
-  Object.fromEntries(parameters.map(({ name, value }) => [name, value]));
-export const PLACES = Object.fromEntries(
-  Object.entries(TABLES).map(([place, table]) => [place, table.map(toParameter)]),
+export const PARAMETERS = Object.entries(TABLES).flatMap(([place, table]) =>
+  table.map(([name, label, unit, value, end, step, hint = "", start = step]) => {
+    return { place, name, label, unit, value, end, step, hint, start };
+  }));
+const valuesOf = (...places) => Object.fromEntries(
+  PARAMETERS.filter(({ place }) => places.includes(place)).map(({ name, value }) => [name, value]),
 );
-export const PARAMETERS = Object.values(PLACES).flat();
 
 /** Instruments without a fault. `estimate` is whether policies get an estimate of the state. */
-export const IDEAL = { ...valuesOf(PLACES.instruments), estimate: 1 };
+export const IDEAL = { ...valuesOf("instruments"), estimate: 1 };
 /** The planner holds a machine with these faults with the estimate, and not without it. */
 export const FAULTY = {
   ...IDEAL, actionDelay: 2, encoderCounts: 1024, encoderZero1: 0.018, encoderZero2: 0.018,
 };
 
-const GYMNASIUM = { dynamics: "book", ...valuesOf([...PLACES.params, ...PLACES.others]) };
+const GYMNASIUM = { dynamics: "book", ...valuesOf("params", "others") };
 export const DEFAULTS = { ...GYMNASIUM, ...IDEAL };
 
 /** A motor and a time step with which holding upright is easy to watch. */
