@@ -1,17 +1,13 @@
 // One episode: its start, parameters, inputs and states.
 
 import { Acrobot } from "./acrobot-rs/index.js";
-import { LIMIT } from "./settings.js";
+import { IDEAL, LIMIT } from "./settings.js";
 
 /** The largest level of the motor, which has 12 bits, so that a link is short. */
 export const FULL = 2047;
 /** A number of the normal distribution with a standard deviation of 1. */
 export const normal = () =>
   Math.sqrt(-2 * Math.log(1 - Math.random())) * Math.cos(2 * Math.PI * Math.random());
-
-/** The level that a noisy motor makes of another. */
-export const noisy = (level, { noise, torque }) =>
-  noise === 0 ? level : levelOf(torqueOf(level, torque) + noise * normal(), torque);
 
 /** An acrobot with friction. Without it, steps have the bits of Gymnasium's task. */
 export const newAcrobot = () => new Acrobot({ task: "balance" });
@@ -24,6 +20,16 @@ export const UNITS = 4096;
 const [MEMORY, MOST] = [60, 6000];
 /** In shorter steps, s, a display shows no state between two of them. */
 const FRAME = 0.025;
+
+const wholeUpTo = (most) => (x) => Number.isInteger(x) && x >= 0 && x <= most;
+/** What the package does not check: names, which values are valid, and the rule in words. */
+const RULES = [
+  ["torque motorLag noise angleNoise", (x) => x >= 0 && x < Infinity, "finite and at least 0"],
+  ["actionDelay", wholeUpTo(8), "a whole number of steps from 0 to 8"],
+  ["encoderCounts", wholeUpTo(2 ** 22), "a whole number a turn from 0 to 4194304"],
+  ["encoderZero1 encoderZero2", (x) => Math.abs(x) <= Math.PI, "within ±π rad"],
+  ["estimate", wholeUpTo(1), "0 or 1"],
+];
 
 /** Whether a state is upright: within 0.1 rad and 0.5 rad/s. */
 export const isUpright = ({ theta1, theta2, ...velocities }) =>
@@ -50,6 +56,8 @@ export class Game {
   /** The last inputs: the level of each step, and its change of both velocities, or null. */
   levels = [];
   pushes = [];
+  /** What makes `seen` of the state; null until it has been loaded. */
+  instruments = null;
   /** Whether the game goes on at the goal and at the limit of steps. */
   free = false;
   /**
@@ -74,7 +82,7 @@ export class Game {
     this.acrobot.state = start ?? this.#gymnasium.state;
     Object.assign(this, { seed, start, levels: [], pushes: [] });
     [this.#rows, this.#first, this.#at, this.#end] = [[], 0, 0, null];
-    this.#rows.push(this.#row(0, null));
+    this.#rows.push(this.#row(0, null, { sent: 0, drive: 0 }));
   }
 
   /** Changes the parameters for the next steps. The inputs then begin with the next step. */
@@ -85,28 +93,55 @@ export class Game {
   }
 
   #set(params) {
-    const { torque, friction, noise, encoders, ...others } = params;
-    for (const [name, value] of Object.entries({ torque, noise, encoders })) {
-      if (!(value >= 0 && value < Infinity)) {
-        throw new Error(`${name} must be finite and at least 0, got ${value}`);
+    for (const [names, isValid, rule] of RULES) {
+      for (const name of names.split(" ")) {
+        if (!isValid(params[name])) throw new Error(`${name} must be ${rule}, got ${params[name]}`);
       }
     }
+    const { torque, friction, ...others } = params;
+    for (const name of Object.keys(IDEAL)) delete others[name];
     const torques = [-torque, 0, torque];
     this.acrobot.setParams({ ...others, torques, damping1: friction, damping2: friction });
     this.params = params;
   }
 
-  /** Steps with a level of the motor, and a push in its units or null. */
-  step(level, push = null) {
+  /**
+   * The motor's torques in the next steps, N m, without noise: after the levels on their way, and
+   * those that follow.
+   */
+  drivesOf(next) {
+    const { torque, dt, motorLag, actionDelay } = this.params;
+    const first = this.#at + 1 - actionDelay;
+    const late = Array.from({ length: actionDelay }, (_, i) => this.#rows[first + i]?.sent ?? 0);
+    let { drive } = this.motor;
+    return [...late, ...next].map((level) => {
+      drive += (dt / (dt + motorLag)) * (torqueOf(level, torque) - drive);
+      return drive;
+    });
+  }
+
+  /** Steps with a level that is sent to the motor, which acts late, slowly and with noise. */
+  send(sent, push = null) {
+    const { torque, noise, motorLag, actionDelay } = this.params;
+    this.cut();
+    const [drive] = this.drivesOf([sent]);
+    const level = motorLag + actionDelay === 0 ? sent : levelOf(drive, torque);
+    const noisy = () => levelOf(torqueOf(level, torque) + noise * normal(), torque);
+    this.step(noise === 0 ? level : noisy(), push, { sent, drive });
+  }
+
+  /** Steps with a level that acts, and a push in its units or null. */
+  step(level, push = null, motor = null) {
     if (this.end !== null) return;
     this.cut();
     const torque = torqueOf(level, this.params.torque);
     const { reward } = apply(this.acrobot, torque, push);
     this.levels.push(level);
     this.pushes.push(push);
-    this.#rows.push(this.#row(torque, push));
+    this.#rows.push(this.#row(torque, push, motor ?? { sent: level, drive: torque }));
     this.#at++;
     this.#forget();
+    this.instruments?.look(this);
     if (this.free) return;
     if (reward > GOAL) this.#end = "goal";
     else if (this.steps === LIMIT) this.#end = "limit";
@@ -150,12 +185,12 @@ export class Game {
     this.start = stateOf(this.#rows.at(-1 - LIMIT).numbers);
   }
 
-  #row(torque, push) {
+  #row(torque, push, motor) {
     const { state, energy, tipHeight } = this.acrobot;
     const numbers = Float32Array.of(...Object.values(state), energy, tipHeight, torque);
     const before = this.#rows[this.#at]?.upright ?? 0;
     const upright = isUpright(state) ? before + this.params.dt : 0;
-    return { numbers, push, upright, params: this.params };
+    return { numbers, push, upright, params: this.params, ...motor };
   }
 
   get steps() {
@@ -180,6 +215,16 @@ export class Game {
   /** `"goal"` or `"limit"` once the episode has ended. */
   get end() {
     return this.#at === this.#rows.length - 1 ? this.#end : null;
+  }
+
+  /** The motor's last level that was sent, and its last torque without noise, N m. */
+  get motor() {
+    return this.#rows[this.#at];
+  }
+
+  /** The state that a policy sees. */
+  get seen() {
+    return this.instruments?.look(this) ?? this.acrobot.state;
   }
 
   /** How long it has been upright, s. */

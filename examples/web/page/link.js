@@ -54,11 +54,12 @@ export function decodeRun(hash) {
   };
   const names = ["seed", "dynamics", "policy", "controller", "actions", "state",
     "torques", "pushes", ...Object.keys(SCORES)];
-  const known = [...names, ...PARAMETERS.map(({ name }) => name)];
+  const numbers = [...PARAMETERS.map(({ name }) => name), "estimate"];
+  const known = [...names, ...numbers];
   const unknown = [...fields.keys()].find((name) => !known.includes(name));
   if (unknown !== undefined) rejected(`names in the link must be ${known.join(", ")}`, unknown);
   const params = { ...DEFAULTS };
-  for (const { name } of PARAMETERS) {
+  for (const name of numbers) {
     if (fields.has(name)) params[name] = parseNumber(fields.get(name));
   }
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");

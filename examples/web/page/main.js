@@ -3,7 +3,7 @@
 import { bangBang, energyLaw } from "./acrobot-rs/policies.js";
 import { Scores } from "./challenge.js";
 import { connectControls } from "./controls.js";
-import { FULL, Game, UNITS, noisy } from "./game.js";
+import { FULL, Game, UNITS } from "./game.js";
 import { actionsOf, decodeRun, encodeRun } from "./link.js";
 import { numbersOf } from "./numbers.js";
 import { connectPanels } from "./panels.js";
@@ -73,8 +73,6 @@ function start() {
     return units.some((unit) => unit !== 0) ? units : null;
   };
 
-  const levelBy = (policy, game) => noisy(policies[policy](game), game.params);
-
   const step = () => {
     scores.aim(game);
     try {
@@ -86,9 +84,10 @@ function start() {
         return pause("The replay has ended. Press Restart, or an arrow and Play.");
       }
       const pushed = replays ? recorded.pushes[index] : push();
-      game.step(replays ? recorded.levels[index] : levelBy(policy, game), pushed);
+      if (replays) game.step(recorded.levels[index], pushed);
+      else game.send(policies[policy](game), pushed);
       const other = $("rival").value;
-      if (other !== "") rival.step(levelBy(other, rival), pushed);
+      if (other !== "") rival.send(policies[other](rival), pushed);
     } catch (error) {
       return stick(minus(error.message)); // With extreme physics an energy is infinite.
     }
@@ -267,7 +266,8 @@ function start() {
     const pulled = pulling() && { point: pulling().point, target: target() };
     const part = calm.matches ? 1 : Math.min(shown / dt, 1);
     const path = game.steps === game.span[1] && planner?.path;
-    drawStage(game, part, path || [], pulled);
+    const ghost = $("imperfect").open ? game.instruments?.ghostOf(game) : null;
+    drawStage(game, part, path || [], pulled, ghost);
     drawRival($("rival").value === "" ? null : rival, part);
     // Last, because the size of a canvas is only known after the layout.
     showNumbers(now);
@@ -298,8 +298,8 @@ function start() {
   for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
   /** With Gymnasium's 1 N m a swing-up takes at least 10 s, and a touch is enough for a fall. */
   const strengthen = () => {
-    if (!isSame(game.params, DEFAULTS)) return;
-    setPhysics({ ...BALANCE });
+    if (machineOf(game.params) !== "Gymnasium") return;
+    setPhysics({ ...game.params, ...BALANCE });
     showParams();
     say(`The machine is now ${machineOf(game.params)}. ${playing ? player() : ""}`);
   };
@@ -313,7 +313,8 @@ function start() {
     play();
   };
   // After a click. Who uses the keyboard may go on with ↑ and ↓.
-  const leaves = ({ target }) => target.matches("select:not(:focus-visible)") && target.blur();
+  const left = ":is(select, [type=checkbox]):not(:focus-visible)";
+  const leaves = ({ target }) => target.matches(left) && target.blur();
   $("app").addEventListener("change", leaves);
 
   // ---- settings
@@ -381,7 +382,10 @@ function start() {
   // The page begins without it, because it is large.
   import("./planner.js").then((module) => {
     control = module;
-    for (const each of [game, rival]) planners.set(each, new control.PlannerPolicy());
+    for (const each of [game, rival]) {
+      planners.set(each, new control.PlannerPolicy());
+      each.instruments = new control.Instruments();
+    }
     $("balance").disabled = false;
   }, ({ message }) => say(`The planner could not be loaded: ${message}.`));
 }

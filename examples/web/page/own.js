@@ -85,7 +85,7 @@ export function ownPanel({ run, answered, failed, chosen }) {
       const isNew = asked?.levels !== levels;
       if (isNew) since = steps;
       [asked, torque] = [{ steps, levels }, null];
-      const { state, params } = game.acrobot;
+      const { seen: state, acrobot: { params } } = game;
       const t = (steps - since) * params.dt;
       clearTimeout(timer);
       timer = setTimeout(fail, LIMIT, `there was no answer within ${LIMIT / 1000} s`);

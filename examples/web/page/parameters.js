@@ -1,8 +1,8 @@
-// The panel "Physics": a choice of equations, and a slider and a field for each parameter. The
-// field shows why a value is rejected.
+// The panels of the machine and its faults: a choice of equations, and a slider and a field for each
+// parameter. The field shows why a value is rejected.
 
 import { minus } from "./plot.js";
-import { FIRST, MACHINES, PARAMETERS, machineOf, parseNumber, textOf } from "./settings.js";
+import { FAULTY, IDEAL, MACHINES, PARAMETERS, machineOf, parseNumber, textOf } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -25,7 +25,7 @@ export function parametersPanel(get, take) {
     take(params);
     showMachine();
   };
-  const fields = PARAMETERS.map(({ name, label, unit, start, end, step, hint }, i) => {
+  const fields = PARAMETERS.map(({ place, name, label, unit, start, end, step, hint }) => {
     const field = document.createElement("div");
     field.className = "field parameter";
     const described = `aria-describedby="${name}-hint ${name}-reason"`;
@@ -37,7 +37,7 @@ export function parametersPanel(get, take) {
       <span class="hint">${unit}</span>
       <p id="${name}-reason" class="reason" role="alert"></p>
       <p id="${name}-hint" class="hint">${hint}</p>`;
-    $(i < FIRST ? "params" : "others").append(field);
+    $(place).append(field);
     const [slider, text] = field.querySelectorAll("input");
     const reason = field.querySelector(".reason");
     const change = () => {
@@ -63,13 +63,21 @@ export function parametersPanel(get, take) {
   const show = () => {
     showMachine();
     $("dynamics").value = get().dynamics;
+    $("estimate").checked = get().estimate === 1;
     fields.forEach((show) => show());
   };
   $("dynamics").onchange = ({ target }) => set({ ...get(), dynamics: target.value });
   $("machine").append(...Object.keys(MACHINES).map((name) => new Option(name)));
   $("machine").onchange = ({ target }) => {
-    set({ ...MACHINES[target.value] });
+    set({ ...get(), ...MACHINES[target.value] });
     show();
   };
+  $("estimate").onchange = ({ target }) => set({ ...get(), estimate: Number(target.checked) });
+  for (const [id, values] of Object.entries({ faulty: FAULTY, ideal: IDEAL })) {
+    $(id).onclick = () => {
+      set({ ...get(), ...values });
+      show();
+    };
+  }
   return show;
 }

@@ -3,12 +3,13 @@
 // predicted in a model: the picture shows where the tip will be, and a state that differs shows
 // that somebody has pushed or that a parameter has changed.
 
-import { Estimator, deviationFrom, planTorque } from "./acrobot-rs/control.js";
+import { deviationFrom, planTorque } from "./acrobot-rs/control.js";
 import { energyLaw } from "./acrobot-rs/policies.js";
-import { isUpright, levelOf, newAcrobot, normal, torqueOf } from "./game.js";
+import { isUpright, levelOf, newAcrobot, torqueOf } from "./game.js";
 import { placesOf } from "./places.js";
 import { reasonOf } from "./settings.js";
 
+export { Instruments } from "./instruments.js";
 export { pull } from "./push.js";
 
 /** The part of the motor's torque for plans. The rest is for corrections. */
@@ -22,8 +23,6 @@ const SETTLED = 2;
  * plan, and before.
  */
 const [PLANNED_ERROR, ERROR] = [0.05, 0.3];
-/** The torque's standard deviation for the estimator, as a part of the largest torque. */
-const TORQUE_STD = 0.01;
 /** The most steps of a prediction, so that a tiny time step does not take minutes. */
 const STEPS = 3000;
 
@@ -36,9 +35,6 @@ export class PlannerPolicy {
   #ahead = [];
   #model = newAcrobot();
   #params = null;
-  /** What estimates the state if the encoders are noisy. */
-  #estimator = null;
-  #level = 0;
   #plan = null;
   /** The step of the plan in the model's state. */
   #step = 0;
@@ -52,7 +48,7 @@ export class PlannerPolicy {
     this.#check();
     const { params } = game;
     if (params !== this.#params) this.#take(game);
-    const state = this.#look(game);
+    const state = game.seen;
     const most = this.#plan === null ? ERROR : PLANNED_ERROR;
     const [next] = this.#ahead;
     const errors = next && Object.values(deviationFrom(state, next.state));
@@ -66,17 +62,7 @@ export class PlannerPolicy {
     this.#wasPulled = isPulled;
     const { step, level } = this.#ahead.shift();
     const isFollowed = this.#plan !== null;
-    this.#level = isFollowed ? levelOf(this.#torque(state, step), params.torque) : level;
-    return this.#level;
-  }
-
-  /** The game's state, or an estimate of it if the encoders are noisy. */
-  #look({ acrobot: { state }, params: { encoders, torque } }) {
-    if (this.#estimator === null) return state;
-    this.#estimator.predict(torqueOf(this.#level, torque));
-    const [theta1, theta2] = [state.theta1, state.theta2].map((x) => x + encoders * normal());
-    this.#estimator.correct(theta1, theta2);
-    return this.#estimator.state;
+    return isFollowed ? levelOf(this.#torque(state, step), params.torque) : level;
   }
 
   /** The tip's places to come, m. */
@@ -93,9 +79,6 @@ export class PlannerPolicy {
   }
 
   #take({ params, acrobot }) {
-    const { encoders, noise, torque } = params;
-    const std = { angleStd: encoders, torqueStd: TORQUE_STD * torque + noise };
-    this.#estimator = encoders > 0 ? new Estimator(acrobot.params, std) : null;
     this.#model.setParams(acrobot.params);
     [this.#params, this.#plan, this.#ahead] = [params, null, []];
   }

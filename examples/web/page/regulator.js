@@ -156,10 +156,10 @@ export function regulatorPanel({ game, play, changed }) {
       const verdict = region === null ? "" : region.at(-1) ? "it holds from here" : "it falls";
       if ($("verdict-now").textContent !== verdict) $("verdict-now").textContent = verdict;
     },
-    act({ acrobot, params }) {
+    act({ seen, params }) {
       design();
       if (gain === null) throw new Error(reason);
-      return levelOf(torqueBy(gain, acrobot.state), params.torque);
+      return levelOf(torqueBy(gain, seen), params.torque);
     },
   };
 }

@@ -49,11 +49,12 @@ export function placeAt(x, y, { length1, length2 }) {
 
 /**
  * Draws a game at a part of its last step, from 0 to 1, with the path of the tip to come, and with
- * what pulls: a `point` of a link and a `target`, or null.
+ * what pulls: a `point` of a link and a `target`, or null; and with the state that policies see as
+ * a ghost, or null.
  */
-export function drawStage(game, part, path, pulled) {
-  const names = ["--text", "--link", "--joint", "--torque", "--accent", "--second"];
-  const [target, link, joint, torque, accent, second] = names.map(color);
+export function drawStage(game, part, path, pulled, ghost) {
+  const names = ["--text", "--link", "--joint", "--torque", "--accent", "--second", "--muted"];
+  const [target, link, joint, torque, accent, second, muted] = names.map(color);
   // The arrow fades with the torque.
   const share = Math.min(Math.abs(game.numbers[6]) / game.params.torque || 0, 1);
   const faded = `${torque}${Math.round(255 * share).toString(16).padStart(2, "0")}`;
@@ -75,6 +76,7 @@ export function drawStage(game, part, path, pulled) {
     context.stroke();
   };
   if (path.length > 0) line([placesOf(state, game.params)[1], ...path], accent, [1, 2]);
+  if (ghost) line([[0, 0], ...placesOf(ghost, game.params)], muted, []);
   if (pulled !== null) {
     const from = placeOf(pulled.point, state, game.params);
     line([from, pulled.target], second, []);

@@ -37,7 +37,7 @@ onPage("the planner holds the acrobot, also after pulls", {}, async (page) => {
 for (const [machine, settings] of [
   ["dm_control", {}],
   ["RealAIGym", {}],
-  ["Gymnasium, 5 N m", { friction: "0.1", noise: "0.2", encoders: "0.002" }],
+  ["Gymnasium, 5 N m", { friction: "0.1", noise: "0.2", angleNoise: "0.002" }],
 ]) {
   const name = `the planner holds the machine of ${machine} with ${JSON.stringify(settings)}`;
   onPage(name, {}, async (page) => {
@@ -60,7 +60,7 @@ onPage("noise acts on the motor, and blinds the planner", {}, async (page) => {
   await page.click("#balance");
   await page.selectOption("#pace", "4");
   await holds(page);
-  await page.fill("#encoders", "0.5");
+  await page.fill("#angleNoise", "0.5");
   await says(page, "#return", /^0\.0 s$/);
 });
 
