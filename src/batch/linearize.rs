@@ -13,7 +13,7 @@ use crate::control::model::step_model::{by_bounds, clamp, derivatives};
 use crate::error::Error;
 use crate::math::matrix::{check_finite, transpose};
 use crate::math::{Kernel, Lanes, Numbers, Real, Zeros, lanes, pair, set_lanes};
-use crate::physics::Params;
+use crate::physics::{Params, step};
 use crate::task::{Memory, Task};
 
 impl<A: Arithmetic, S: Storage<A, N, T::Memory>, T: Task, const N: usize> Batch<A, S, T, N> {
@@ -117,7 +117,9 @@ impl<A: Arithmetic, M: Memory, const N: usize> Kernel for Linearize<'_, A, M, N>
                     set_lanes(column, i, x);
                 }
             }
-            let sides = by_bounds::<A, _>(model, y, sin_cos, torques);
+            let (mut end, mut of_end) = (y, sin_cos);
+            step::<A, _>(model, &mut end, &mut of_end, torques);
+            let sides = by_bounds::<A, _>(model, end);
             clamp(&mut columns, sides);
             add_zeros(sum, &columns);
             let [by1, by2, by3, by4, by_torque] = &columns;

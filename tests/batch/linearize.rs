@@ -9,8 +9,11 @@ use acrobot::{Error, Fast, Params, Portable, State};
 
 const ZERO: StepModel = StepModel { a: [[0.0; 4]; 4], b: [0.0; 4] };
 
-/// Parameters, a state and a torque of each acrobot. Many velocities meet their bounds.
-fn cases(count: usize) -> Vec<(Params, State, f64)> {
+/// The parameters, the state and the torque of an acrobot.
+type Case = (Params, State, f64);
+
+/// Many velocities meet their bounds.
+fn cases(count: usize) -> Vec<Case> {
     let mut rng = Pcg64::new(7);
     let mut draw = |low, high| uniform(&mut rng, low, high);
     (0..count)
@@ -26,7 +29,7 @@ fn cases(count: usize) -> Vec<(Params, State, f64)> {
         .collect()
 }
 
-fn batch<A: Arithmetic>(cases: &[(Params, State, f64)]) -> VecBatch<A> {
+fn batch<A: Arithmetic>(cases: &[Case]) -> VecBatch<A> {
     let mut batch = VecBatch::<A>::new(0, cases.len()).unwrap();
     batch.own_params().unwrap();
     for (index, (params, state, _)) in cases.iter().enumerate() {
@@ -37,9 +40,9 @@ fn batch<A: Arithmetic>(cases: &[(Params, State, f64)]) -> VecBatch<A> {
 }
 
 /// A and B, the derivatives by the parameters, and the states after the step.
-fn results<A: Arithmetic<Scalar = f64>>(
-    cases: &[(Params, State, f64)],
-) -> (Vec<StepModel>, Vec<Params<[f64; 4]>>, Vec<[f64; 4]>) {
+type Results = (Vec<StepModel>, Vec<Params<[f64; 4]>>, Vec<[f64; 4]>);
+
+fn results<A: Arithmetic<Scalar = f64>>(cases: &[Case]) -> Results {
     let mut batch = batch::<A>(cases);
     let torques: Vec<_> = cases.iter().map(|(_, _, torque)| *torque).collect();
     let mut models = vec![ZERO; cases.len()];
@@ -85,7 +88,7 @@ fn derivatives_are_those_of_differences() {
     const H: f64 = 1e-6;
     let cases = cases(300);
     let (models, by_params, _) = results::<Damped<Portable>>(&cases);
-    let difference = |change: &dyn Fn(&mut (Params, State, f64), f64)| {
+    let difference = |change: &dyn Fn(&mut Case, f64)| {
         let [more, less] = [H, -H].map(|h| {
             let mut changed = cases.clone();
             changed.iter_mut().for_each(|case| change(case, h));

@@ -68,7 +68,7 @@ async function open(html, play = () => {}) {
   return lines;
 }
 
-test("the package has at most 394 KB and these files", () => {
+test("the package has at most 398 KB and these files", () => {
   const report = run("npm", ["pack", "--json", "--dry-run", join(here, "dist")]);
   const [{ name, files, unpackedSize }] = JSON.parse(report);
   const paths = files.map(({ path }) => path).sort();
@@ -77,7 +77,7 @@ test("the package has at most 394 KB and these files", () => {
   );
   const licences = ["APACHE", "MIT", "tiny-inflate"].map((name) => `LICENSE-${name}`);
   assert.deepEqual(paths, [...licences, "README.md", "package.json", ...entries].sort());
-  assert.ok(unpackedSize <= 394_000, `${unpackedSize} bytes`);
+  assert.ok(unpackedSize <= 398_000, `${unpackedSize} bytes`);
   assert.equal(name, "acrobot-rs");
 });
 
@@ -85,7 +85,7 @@ test("the modules import nothing, and those of acrobots and of control cannot pa
   for (const [name, most, used] of [
     ["acrobots", 88_300, "acrobot_batch_step"],
     ["instruments", 100_900, "acrobot_batch_step"],
-    ["control", 171_000, "acrobot_planner_plan"],
+    ["control", 173_000, "acrobot_planner_plan"],
     ["learner", 23_000, "train"],
   ]) {
     const [text, module] = ["wat", "wasm"].map((type) => join(here, `target/${name}.${type}`));

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::math::matrix::{check_finite, dot, transpose};
 use crate::math::sealed::Sealed as _;
 use crate::math::{Lanes, Numbers, Real, SinCos};
-use crate::physics::{Model, Pendulum, check_torque, plus_scaled, step};
+use crate::physics::{Model, Pendulum, check_torque, plus_scaled};
 
 /// A linear model of one step of `dt`, x′ = A x + B u: x is the deviation from a state \[θ1, θ2,
 /// θ̇1, θ̇2\], rad and rad/s, x′ that from the state after the step, and u that from a torque, N m,
@@ -54,8 +54,9 @@ impl<A: Arithmetic> Pendulum<A> {
     /// The errors of [`linearize`](Self::linearize).
     #[inline(never)] // saves flash
     pub fn linearize_step(&self, torque: A::Scalar) -> Result<StepModel<A::Scalar>, Error> {
-        let (y, sin_cos) = (self.state().into(), self.sin_cos());
-        let bounds = by_bounds::<A, A::Scalar>(self.model(), y, sin_cos, torque);
+        let mut after = self.clone();
+        after.step(torque)?;
+        let bounds = by_bounds::<A, A::Scalar>(self.model(), after.state().into());
         self.linearize_step_within(torque, bounds)
     }
 
@@ -137,16 +138,13 @@ pub(crate) fn derivatives<A: Arithmetic, const IN_LANES: bool>(
     stages.next::<A, true>(model, &before, y, torque, dt, sixth).after
 }
 
-/// The derivatives of the velocities after a step by their bounds: 1 or −1 where they are clamped,
-/// otherwise 0.
+/// The derivatives of the velocities of the state after a step by their bounds: 1 or −1 where they
+/// are clamped, otherwise 0.
 #[inline(always)]
 pub(crate) fn by_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,
-    mut y: [V; 4],
-    mut sin_cos: [SinCos<V>; 2],
-    torque: V,
+    y: [V; 4],
 ) -> [V; 2] {
-    step::<A, V>(model, &mut y, &mut sin_cos, torque);
     let one = A::Scalar::ONE;
     let side = |x: A::Scalar, bound| match x.abs() < bound {
         true => A::Scalar::ZERO,

@@ -121,7 +121,8 @@ impl<A: Arithmetic> BoundedRegulator<A> {
         (params.coulomb1, params.coulomb2) = (none, none);
         let free = Pendulum::<A>::new(params, target)?;
         let far = f64::INFINITY;
-        let design = Design::new(&free.linearize_free_step(torque)?, units, [LINEAR, far, far, far])?;
+        let design =
+            Design::new(&free.linearize_free_step(torque)?, units, [LINEAR, far, far, far])?;
         if design.roughness(PI, params.dt) > if is_dry { ROUGH_DRY } else { ROUGH } {
             let rule = "longer for this scalar, which loses small velocities upright, in";
             let value = params.dt.to_f64();
