@@ -88,8 +88,8 @@ fn linearize<A: Arithmetic>(name: &str, level: SimdLevel, with_params: bool) {
     let one = Pendulum::<A>::new(Params::<f64>::DEFAULT.cast(), State::UPRIGHT);
     let one = one.expect("valid parameters");
     let torque = A::Scalar::from_f64(0.5);
-    let mut models = vec![one.linearize_step(torque).expect("finite derivatives"); COUNT];
-    let mut by_params = vec![one.params().map(|_| [torque; 4]); COUNT];
+    let mut models = [one.linearize_step(torque).expect("finite derivatives"); COUNT];
+    let mut by_params = [one.params().map(|_| [torque; 4]); COUNT];
     let ours = || {
         for _ in 0..50 {
             let by_params = with_params.then_some(&mut by_params[..]);

@@ -1,5 +1,5 @@
-// The panels of the machine and its faults: a choice of equations, and a slider and a field for each
-// parameter. The field shows why a value is rejected.
+// The panels of the machine and its faults: a choice of equations, and a slider and a field for
+// each parameter. The field shows why a value is rejected.
 
 import { minus } from "./plot.js";
 import { FAULTY, IDEAL, MACHINES, PARAMETERS, machineOf, parseNumber, textOf } from "./settings.js";
