@@ -15,19 +15,23 @@ NAMES = "python", *(f"python-{name}" for name in PYTHON), "swingup", "gradients"
 PAGES = ["README.md", "bindings/python/README.md", *(f"docs/{name}.md" for name in NAMES)]
 
 
-@pytest.mark.parametrize("name", PAGES)
-def test_code_runs_and_prints_what_its_comments_say(name, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def run(name, kind, capsys):
+    """Runs all blocks of a page in one session, as a reader does."""
     page = ROOT / name
-    blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
+    blocks = re.findall(rf"^```{kind}\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
     assert blocks
-    # A reader runs all blocks of a page in one session.
     session = {}
     for block in blocks:
         exec(compile(block, page, "exec"), session)
         assert capsys.readouterr().out.splitlines() == re.findall(
             r"^# prints (.*)", block, re.MULTILINE
         )
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_code_runs_and_prints_what_its_comments_say(name, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run(name, "python", capsys)
     if name == "docs/python-firmware.md":  # what the firmwares embed
         for committed in ("examples/cortex-m/src/plan.rs", "bindings/c/firmware/plan.h"):
             written = (tmp_path / Path(committed).name).read_bytes()
