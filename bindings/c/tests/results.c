@@ -140,7 +140,23 @@ static void compare_snapshot(const uint8_t *bytes, size_t length, const double *
     } \
     SNAPSHOT(acrobot_save, &acrobot)
 
-// That of a library with instruments has these, too.
+static void step_each(acrobot_batch_t *batch, const acrobot_reset_options_t *options,
+                      const double *torques, size_t count)
+{
+    float rewards[ACROBOTS], inputs[ACROBOTS];
+    bool terminated[ACROBOTS], truncated[ACROBOTS];
+    acrobot_observation_t rows[ACROBOTS];
+    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL};
+    ACCEPTED(acrobot_batch_reset_with(batch, options, NULL));
+    for (size_t i = 0; i < count; i += ACROBOTS) {
+        to_floats(inputs, torques + i, ACROBOTS);
+        ACCEPTED(acrobot_batch_step_torque(batch, inputs, &results, ACROBOTS));
+        COMPARE(rewards);
+        COMPARE(rows);
+    }
+}
+
+// The snapshot of a library with instruments has these, too.
 #ifdef ACROBOT_INSTRUMENTS
 #define BATCH_SNAPSHOT(holder) (void)snapshot
 #else
@@ -149,33 +165,19 @@ static void compare_snapshot(const uint8_t *bytes, size_t length, const double *
 ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_OWN_SIZE(ACROBOTS)];
 #define batch() \
     acrobot_batch_t *holder; \
-    float rewards[ACROBOTS], inputs[ACROBOTS]; \
-    bool terminated[ACROBOTS], truncated[ACROBOTS]; \
-    acrobot_observation_t rows[ACROBOTS]; \
-    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL}; \
     CHECK(count == ACROBOTS); \
     ACCEPTED( \
         acrobot_batch_init(memory, sizeof memory, ACROBOTS, (int)task, true, 0, &holder)); \
     ACCEPTED(acrobot_batch_set_draws(holder, draws_of(draws), NULL)); \
     ACCEPTED(acrobot_batch_set_max_steps(holder, (uint32_t)max_steps, NULL)); \
     ACCEPTED(acrobot_batch_set_autoreset(holder, ACROBOT_AUTORESET_SAME_STEP, NULL)); \
-    ACCEPTED(acrobot_batch_reset_with(holder, seeded(seed, COUNT(seed)), NULL)); \
-    for (size_t i = 0; i < COUNT(torques); i += ACROBOTS) { \
-        to_floats(inputs, torques + i, ACROBOTS); \
-        ACCEPTED(acrobot_batch_step_torque(holder, inputs, &results, ACROBOTS)); \
-        COMPARE(rewards); \
-        COMPARE(rows); \
-    } \
+    step_each(holder, seeded(seed, COUNT(seed)), torques, COUNT(torques)); \
     BATCH_SNAPSHOT(holder)
 
 // The library has instruments or not.
 #ifdef ACROBOT_INSTRUMENTS
 #define instruments() \
     acrobot_batch_t *holder; \
-    float rewards[ACROBOTS], inputs[ACROBOTS]; \
-    bool terminated[ACROBOTS], truncated[ACROBOTS]; \
-    acrobot_observation_t rows[ACROBOTS]; \
-    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, NULL}; \
     acrobot_instrument_draws_t how; \
     acrobot_instruments_t own = {0, 0, 0, 0, 0, 0, 0, 0, 0}; \
     CHECK(count == ACROBOTS); \
@@ -187,13 +189,7 @@ ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_OWN_SIZ
         own.encoder_zero2 = (float)zeros[i]; \
         ACCEPTED(acrobot_batch_set_instruments(holder, i, &own, NULL)); \
     } \
-    ACCEPTED(acrobot_batch_reset_with(holder, seeded(seed, COUNT(seed)), NULL)); \
-    for (size_t i = 0; i < COUNT(torques); i += ACROBOTS) { \
-        to_floats(inputs, torques + i, ACROBOTS); \
-        ACCEPTED(acrobot_batch_step_torque(holder, inputs, &results, ACROBOTS)); \
-        COMPARE(rewards); \
-        COMPARE(rows); \
-    } \
+    step_each(holder, seeded(seed, COUNT(seed)), torques, COUNT(torques)); \
     for (size_t i = 0; i < ACROBOTS; i++) { \
         ACCEPTED(acrobot_batch_instruments(holder, i, &own)); \
         COMPARE(own); \
